@@ -1,0 +1,21 @@
+# gnomon_add_test(NAME SOURCES ... [LINK ...] [LABELS ...] [WHOLE])
+#
+# A GoogleTest program; every test of it is registered with ctest (WHOLE: the program as one test, for those that share an
+# expensive set-up). LABELS defaults to fast.
+include(GoogleTest)
+function(gnomon_add_test name)
+  cmake_parse_arguments(TEST "WHOLE" "" "SOURCES;LINK;LABELS" ${ARGN})
+  if(NOT TEST_LABELS)
+    set(TEST_LABELS fast)
+  endif()
+  add_executable(${name} ${TEST_SOURCES})
+  gnomon_compile_options(${name})
+  target_link_libraries(${name} PRIVATE gnomon GTest::gmock GTest::gtest_main ${TEST_LINK})
+  target_compile_definitions(${name} PRIVATE GNOMON_SOURCE_DIR="${PROJECT_SOURCE_DIR}" GNOMON_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  if(TEST_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT 900)
+  else()
+    gtest_discover_tests(${name} PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+  endif()
+endfunction()
