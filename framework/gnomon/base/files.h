@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,14 +18,19 @@ std::string readFile(const std::filesystem::path& path);
 /// Creates missing folders. Throws Error.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
-/// Appends `line` and a newline in one write and syncs it. A torn last line of an earlier crash is cut first. Throws Error.
+/// The same for a writer that wants a path: calls `write` with a temporary name that has the extension of `path`.
+void replaceFileAtomically(const std::filesystem::path& path,
+                           const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// Appends `line` and a newline in one write and syncs it. A torn last line of an earlier crash is cut first.
+/// One writer a file. Throws Error, also if `line` holds a line break.
 void appendLineSynced(const std::filesystem::path& path, std::string_view line);
 
 /// 128-bit hash as 32 hexadecimal digits (XXH3; not cryptographic).
 std::string hashHex(std::string_view bytes);
 std::string hashHex(std::span<const std::byte> bytes);
 
-/// Folder that holds shaders/ and plugins/: found from where libgnomon itself lies.
+/// Folder that holds shaders/ and plugins/: gnomon/ beside libgnomon itself. Throws Error if there is none.
 std::filesystem::path installationDirectory();
 
 /// $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon, else a folder under the system's temporary one.

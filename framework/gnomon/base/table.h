@@ -41,7 +41,7 @@ enum class FieldType : std::uint8_t {
   vector2,  ///< glm::dvec2        [x, y]
   vector3,  ///< glm::dvec3        [x, y, z]
   object,   ///< struct with its own table
-  list,     ///< std::vector of structs with a table, or of text
+  list,     ///< std::vector of structs with a table, or of text (free, or names out of `choices`, none twice)
   custom    ///< read and described by functions (json.h: CustomField)
 };
 
@@ -60,7 +60,7 @@ struct Field {
   FieldType type = FieldType::boolean;
   std::string meaning;
   Range range;
-  std::vector<std::string> choices;  ///< of FieldType::choice
+  std::vector<std::string> choices;  ///< of FieldType::choice, and of a list of names
   Binding binding = Binding::structure;
   bool required = false;
 
@@ -70,19 +70,32 @@ struct Field {
   std::function<void*(void*)> make;
 
   std::shared_ptr<const FieldTable> nested;  ///< of object, and of list (null: a list of text)
+  std::shared_ptr<const void> blank;         ///< default-constructed: an object, or an element of a list (for schemas)
+  std::function<void(void*)> clear;          ///< of list
   std::function<void*(void*)> append;        ///< of list: adds a default element, returns it
   std::function<std::size_t(const void*)> count;
   std::function<const void*(const void*, std::size_t)> element;
   std::shared_ptr<const CustomField> custom;
 
-  Field&& mandatory() && { required = true; return std::move(*this); }
+  Field&& mandatory() && {
+    required = true;
+    return std::move(*this);
+  }
+  /// Of a list of text: each must be one of these.
+  Field&& among(std::vector<std::string> names) && {
+    choices = std::move(names);
+    return std::move(*this);
+  }
 };
 
 /// Where a value was read, for messages.
 struct Location {
   std::string file;
-  std::string pointer;
-  Location child(const std::string& key) const { return {file, pointer + "/" + key}; }
+  std::string pointer;         ///< JSON pointer
+  std::string keyPrefix = {};  ///< before the key of a child: how the check of an inlined struct finds its flat keys
+
+  /// The member `key` of the object here; `/` and `~` in it are escaped as JSON pointers want.
+  Location child(const std::string& key) const;
   Location child(std::size_t index) const { return {file, pointer + "/" + std::to_string(index)}; }
 };
 
@@ -104,15 +117,24 @@ class FieldTable {
   Check check_;
 };
 
-/// A list of fields that may be nested lists (from inlined()).
+/// "an integer from 1 to 31 texels", "one of box, gaussian": what a person may write for the field. Empty for custom fields.
+std::string allowedText(const Field& field);
+
+/// The value of the field in `object`, as JSON without the quotes of text ("5", "box", "[1080,2220]"); "none" if it is empty.
+std::string valueText(const Field& field, const void* object);
+
+/// One field, or the fields of an inlined struct with their check.
 class Fields {
  public:
-  Fields(Field field) { list_.push_back(std::move(field)); }                      // NOLINT(google-explicit-constructor)
-  Fields(std::vector<Field> fields) : list_(std::move(fields)) {}                // NOLINT(google-explicit-constructor)
+  Fields(Field field) { list_.push_back(std::move(field)); }  // NOLINT(google-explicit-constructor)
+  explicit Fields(std::vector<Field> fields, FieldTable::Check check = {})
+      : list_(std::move(fields)), check_(std::move(check)) {}
   const std::vector<Field>& list() const { return list_; }
+  const FieldTable::Check& check() const { return check_; }
 
  private:
   std::vector<Field> list_;
+  FieldTable::Check check_;
 };
 
 /// The table of T: what each technique and each configurable struct returns.
@@ -120,12 +142,16 @@ template <class T>
 class ParameterTable {
  public:
   ParameterTable(std::initializer_list<Fields> fields) {
-    for (const Fields& some : fields) fields_.insert(fields_.end(), some.list().begin(), some.list().end());
+    for (const Fields& some : fields) {
+      fields_.insert(fields_.end(), some.list().begin(), some.list().end());
+      if (some.check()) addCheck(some.check());
+    }
   }
+  /// Adds a check of the whole object; it runs after those of inlined structs.
   ParameterTable&& checked(std::function<void(const T&, const Location&, Problems&)> check) && {
-    check_ = [check](const void* object, const Location& where, Problems& problems) {
+    addCheck([check = std::move(check)](const void* object, const Location& where, Problems& problems) {
       check(*static_cast<const T*>(object), where, problems);
-    };
+    });
     return std::move(*this);
   }
   std::shared_ptr<const FieldTable> table() const { return std::make_shared<const FieldTable>(fields_, check_); }
@@ -133,29 +159,57 @@ class ParameterTable {
   const FieldTable::Check& check() const { return check_; }
 
  private:
+  void addCheck(FieldTable::Check next) {
+    if (!check_) {
+      check_ = std::move(next);
+      return;
+    }
+    check_ = [first = std::move(check_), second = std::move(next)](const void* object, const Location& where,
+                                                                   Problems& problems) {
+      first(object, where, problems);
+      second(object, where, problems);
+    };
+  }
+
   std::vector<Field> fields_;
   FieldTable::Check check_;
 };
 
 namespace detail {
 template <class V>
-struct Unwrapped { using Type = V; static constexpr bool optional = false; };
+struct Unwrapped {
+  using Type = V;
+  static constexpr bool optional = false;
+};
 template <class V>
-struct Unwrapped<std::optional<V>> { using Type = V; static constexpr bool optional = true; };
+struct Unwrapped<std::optional<V>> {
+  using Type = V;
+  static constexpr bool optional = true;
+};
 
 template <class V>
 constexpr FieldType fieldTypeOf() {
   using B = std::remove_cv_t<V>;
-  if constexpr (std::is_same_v<B, bool>) return FieldType::boolean;
-  else if constexpr (std::is_same_v<B, int>) return FieldType::integer;
-  else if constexpr (std::is_same_v<B, float>) return FieldType::real32;
-  else if constexpr (std::is_same_v<B, double>) return FieldType::real64;
-  else if constexpr (std::is_same_v<B, std::string>) return FieldType::text;
-  else if constexpr (std::is_same_v<B, glm::ivec2>) return FieldType::size;
-  else if constexpr (std::is_same_v<B, glm::dvec2>) return FieldType::vector2;
-  else if constexpr (std::is_same_v<B, glm::dvec3>) return FieldType::vector3;
-  else if constexpr (std::is_enum_v<B>) return FieldType::choice;
-  else return FieldType::object;
+  if constexpr (std::is_same_v<B, bool>)
+    return FieldType::boolean;
+  else if constexpr (std::is_same_v<B, int>)
+    return FieldType::integer;
+  else if constexpr (std::is_same_v<B, float>)
+    return FieldType::real32;
+  else if constexpr (std::is_same_v<B, double>)
+    return FieldType::real64;
+  else if constexpr (std::is_same_v<B, std::string>)
+    return FieldType::text;
+  else if constexpr (std::is_same_v<B, glm::ivec2>)
+    return FieldType::size;
+  else if constexpr (std::is_same_v<B, glm::dvec2>)
+    return FieldType::vector2;
+  else if constexpr (std::is_same_v<B, glm::dvec3>)
+    return FieldType::vector3;
+  else if constexpr (std::is_enum_v<B>)
+    return FieldType::choice;
+  else
+    return FieldType::object;
 }
 
 template <class T, class V>
@@ -166,8 +220,10 @@ Field makeField(std::string name, V T::*member, std::string meaning) {
   field.type = fieldTypeOf<typename Unwrapped<V>::Type>();
   field.find = [member](const void* object) -> const void* {
     const V& value = static_cast<const T*>(object)->*member;
-    if constexpr (Unwrapped<V>::optional) return value ? &*value : nullptr;
-    else return &value;
+    if constexpr (Unwrapped<V>::optional)
+      return value ? &*value : nullptr;
+    else
+      return &value;
   };
   field.make = [member](void* object) -> void* {
     V& value = static_cast<T*>(object)->*member;
@@ -228,17 +284,22 @@ template <class T, class V>
 Field object(std::string name, V T::*member, std::shared_ptr<const FieldTable> nested, std::string meaning) {
   Field field = detail::makeField(std::move(name), member, std::move(meaning));
   field.nested = std::move(nested);
+  field.blank = std::make_shared<const typename detail::Unwrapped<V>::Type>();
   return field;
 }
 /// std::vector<Struct> with a table, or std::vector<std::string> with none.
-template <class T, class E>
-Field list(std::string name, std::vector<E> T::*member, std::shared_ptr<const FieldTable> nested, std::string meaning) {
+template <class T, class V>
+Field list(std::string name, V T::*member, std::shared_ptr<const FieldTable> nested, std::string meaning) {
+  using List = typename detail::Unwrapped<V>::Type;
+  using Element = typename List::value_type;
   Field field = detail::makeField(std::move(name), member, std::move(meaning));
   field.type = FieldType::list;
   field.nested = std::move(nested);
-  field.append = [](void* values) -> void* { return &static_cast<std::vector<E>*>(values)->emplace_back(); };
-  field.count = [](const void* values) { return static_cast<const std::vector<E>*>(values)->size(); };
-  field.element = [](const void* values, std::size_t i) -> const void* { return &(*static_cast<const std::vector<E>*>(values))[i]; };
+  field.blank = std::make_shared<const Element>();
+  field.clear = [](void* values) { static_cast<List*>(values)->clear(); };
+  field.append = [](void* values) -> void* { return &static_cast<List*>(values)->emplace_back(); };
+  field.count = [](const void* values) { return static_cast<const List*>(values)->size(); };
+  field.element = [](const void* values, std::size_t i) -> const void* { return &(*static_cast<const List*>(values))[i]; };
   return field;
 }
 /// Anything else: json.h's CustomField says how it is read, written and described.
@@ -250,6 +311,7 @@ Field custom(std::string name, V T::*member, std::shared_ptr<const CustomField> 
   return field;
 }
 /// The fields of a member struct as fields of the outer one, their names behind `prefix`: flat keys such as "bias.slope".
+/// The inner table's check runs too, on the member.
 template <class T, class V>
 Fields inlined(V T::*member, const ParameterTable<V>& inner, const std::string& prefix = {}) {
   std::vector<Field> fields = inner.fields();
@@ -258,7 +320,13 @@ Fields inlined(V T::*member, const ParameterTable<V>& inner, const std::string& 
     field.find = [member, find = field.find](const void* object) { return find(&(static_cast<const T*>(object)->*member)); };
     field.make = [member, make = field.make](void* object) { return make(&(static_cast<T*>(object)->*member)); };
   }
-  return fields;
+  FieldTable::Check check;
+  if (inner.check()) {
+    check = [member, prefix, inside = inner.check()](const void* object, const Location& where, Problems& problems) {
+      inside(&(static_cast<const T*>(object)->*member), {where.file, where.pointer, where.keyPrefix + prefix}, problems);
+    };
+  }
+  return Fields(std::move(fields), std::move(check));
 }
 
 }  // namespace gnomon

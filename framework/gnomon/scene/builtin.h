@@ -19,8 +19,8 @@ struct BuiltinParameters {
 
 struct BuiltinScene {
   std::string name;
-  std::string purpose;                       ///< one sentence
-  std::shared_ptr<const FieldTable> table;   ///< of BuiltinParameters: only the keys this scene uses
+  std::string purpose;                      ///< one sentence
+  std::shared_ptr<const FieldTable> table;  ///< of BuiltinParameters: only the keys this scene uses
   BuiltinParameters defaults;
   std::function<Scene(const BuiltinParameters&)> make;
 };
@@ -30,7 +30,7 @@ const std::vector<BuiltinScene>& builtinScenes();
 const BuiltinScene* findBuiltinScene(const std::string& name);
 
 /// Meshes shared by scenes and tests. All face outward / upward, counter-clockwise.
-Mesh quadMesh(double halfX, double halfZ);                ///< in y = 0, facing +Y
+Mesh quadMesh(double halfX, double halfZ);  ///< in y = 0, facing +Y
 Mesh boxMesh(const glm::dvec3& halfSize);
 Mesh sphereMesh(double radius, int segments, int rings);  ///< 2 * segments * (rings - 1) triangles, poles on Y
 

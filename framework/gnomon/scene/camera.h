@@ -6,7 +6,6 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
-#include <vector>
 
 #include "gnomon/base/table.h"
 
@@ -28,12 +27,14 @@ struct Camera {
 /// Rotation from world axes to camera axes. Positions are made relative to the camera's position first, in double.
 glm::dmat4 cameraRotation(const Camera& camera);
 
-/// Reversed-Z projection for glClipControl(LOWER_LEFT, ZERO_TO_ONE): depth 1 at near, 0 at infinity. Row 0 of the picture
-/// is its top. An orthographic camera maps near..far with far = `orthographicFar` metres.
+/// Reversed-Z projection for glClipControl(LOWER_LEFT, ZERO_TO_ONE): depth 1 at near, 0 at infinity. Camera +Y goes to clip
+/// -Y, so that row 0 of the framebuffer is the picture's top and textures read back in GL's order are top-first. This mirrors
+/// the winding: front faces (counter-clockwise as seen) are clockwise in the framebuffer, as under glFrontFace(GL_CW).
+/// An orthographic camera maps near..far with far = `orthographicFar` metres.
 glm::dmat4 cameraProjection(const Camera& camera, double aspect, double orthographicFar = 1e5);
 
 /// Half-spaces (n, d), n.x + d >= 0 inside, of what the camera sees, in world coordinates relative to its position:
-/// left, right, bottom, top, near.
+/// left, right, bottom, top (as seen in the picture), near. Unit normals.
 std::array<glm::dvec4, 5> frustumPlanes(const Camera& camera, double aspect);
 
 /// Metres that a pixel spans, perpendicular to the view, at `distance` along the view axis.

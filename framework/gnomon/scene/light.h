@@ -18,7 +18,7 @@ struct Source {
   SourceShape shape = SourceShape::none;
   glm::dvec2 size{0.0, 0.0};  ///< of a rectangle: metres along the light's X and Y
   double radius = 0.0;        ///< of a disc: metres
-  double rollDegrees = 0.0;   ///< turns X and Y about the light's axis
+  double rollDegrees = 0.0;   ///< turns X and Y about +Z of the light: counter-clockwise as seen along the light, from behind
 };
 
 /// Right-handed, metres. A light looks along -Z of its frame, from `position` to `target`.
@@ -28,10 +28,10 @@ struct Light {
   glm::dvec3 target{0.0, 0.0, 0.0};
   glm::dvec3 up{0.0, 1.0, 0.0};
   double intensity = 1.0;
-  double coneHalfAngleDegrees = 30.0;     ///< spot: hard edge, at most 90 (a bare area light)
-  Source source;                          ///< spot
-  double radius = 0.0;                    ///< point: of its sphere, metres
-  double angularDiameterDegrees = 0.0;    ///< directional: of the disc of directions
+  double coneHalfAngleDegrees = 30.0;   ///< spot: hard edge, at most 90 (a bare area light)
+  Source source;                        ///< spot
+  double radius = 0.0;                  ///< point: of its sphere, metres
+  double angularDiameterDegrees = 0.0;  ///< directional: of the disc of directions
 };
 
 /// Orthonormal axes; the light looks along -z. `up` parallel to the axis falls back to [0,0,-1], then to [1,0,0].
@@ -49,8 +49,8 @@ double sourceDiameter(const Light& light);
 
 /// Where on the source the unit-square point `u` lies, such that uniform u is uniform in what V averages over:
 /// area for rectangles and discs (concentric map), solid angle as seen from `receiver` for spheres,
-/// solid angle of directions for directional lights. Returns a world position, or, for directional lights, the
-/// unit direction towards the light.
+/// solid angle of directions for directional lights. A receiver inside a sphere gets its centre. Returns a world position, or,
+/// for directional lights, the unit direction towards the light.
 glm::dvec3 sampleSource(const Light& light, const LightFrame& frame, glm::dvec2 u, const glm::dvec3& receiver);
 
 /// Unit vector from `receiver` towards the source's centre.

@@ -50,7 +50,9 @@ struct Bounds {
   void add(const Bounds& other);
   glm::dvec3 centre() const { return (min + max) * 0.5; }
   double diagonal() const;
-  glm::dvec3 corner(int i) const { return {(i & 1) != 0 ? max.x : min.x, (i & 2) != 0 ? max.y : min.y, (i & 4) != 0 ? max.z : min.z}; }
+  glm::dvec3 corner(int i) const {
+    return {(i & 1) != 0 ? max.x : min.x, (i & 2) != 0 ? max.y : min.y, (i & 4) != 0 ? max.z : min.z};
+  }
 };
 
 struct Scene {

@@ -16,26 +16,31 @@ struct VisibleReceiver {
   std::vector<glm::dvec3> points;  ///< corners of the convex clipped box, world coordinates
 };
 
-/// Receivers inside the view frustum, conservatively (none is missed).
-std::vector<VisibleReceiver> visibleReceivers(const Scene& scene, const std::vector<Bounds>& instanceBounds, const Camera& camera,
-                                              double aspect);
+/// Receivers inside the view frustum, conservatively (none is missed). `aspect` is width over height.
+std::vector<VisibleReceiver> visibleReceivers(const Scene& scene, const std::vector<Bounds>& instanceBounds,
+                                              const Camera& camera, double aspect);
 
 struct SceneSurvey {
-  Bounds bounds;                        ///< of everything
-  std::vector<Bounds> instanceBounds;   ///< world boxes, as Scene::instances
+  Bounds bounds;                       ///< of everything
+  std::vector<Bounds> instanceBounds;  ///< world boxes, as Scene::instances
   std::size_t triangles = 0;
   std::size_t casterTriangles = 0;
   std::size_t receiverTriangles = 0;
   bool sourceHasExtent = false;
-  /// Receiver triangles with a corner in front of the light's horizon and a plane that faces the source's centre
-  /// (tested on both sides for double-sided materials), in the view frustum and in reach by their boxes. 0: nothing to shadow.
+  /// Receiver triangles with a corner in front of the spot's plane and a plane that faces the source's centre (on either side
+  /// for double-sided materials), not wholly outside the view frustum nor, by their bounding spheres, outside the light's
+  /// reach. 0: nothing to shadow.
   std::size_t facingTriangles = 0;
-  /// Upper bound of the penumbra's width on any visible receiver, in pixels: a (dR - dB) / dB over the nearest caster and the
-  /// farthest visible receiver, stretched by at most 10 at grazing receivers (N.L = 0.1, the terminator), over the footprint
-  /// of a pixel at the nearest visible receiver. Infinity where a caster may touch the source.
+  /// Upper bound of the penumbra's width on any visible receiver, in pixels: a (dR - dB) / (dB - a / 2) with the source's
+  /// diameter a, over the nearest caster and the farthest visible receiver (a / 2, since a caster may be nearer to one end of
+  /// the source than to its centre); for directional lights 2 (dR - dB) tan(delta / 2). Stretched by 10 for grazing receivers
+  /// (N.L = 0.1, the terminator), over the footprint of a pixel at the nearest visible receiver. Infinity where a caster may
+  /// touch the source. 0 without extent, casters or visible receivers.
   double widestPenumbraPixels = 0.0;
-  double nearestCasterDistance = 0.0;     ///< from the light, metres, lower bound
-  double farthestReceiverDistance = 0.0;  ///< from the light, metres, upper bound
+  /// From the light's position, metres; for directional lights depths along its axis, which may be negative.
+  /// 0 where there is none.
+  double nearestCasterDistance = 0.0;     ///< lower bound; a spot's casters have a corner in front of its plane
+  double farthestReceiverDistance = 0.0;  ///< upper bound over the visible receivers' clipped boxes
 };
 
 SceneSurvey survey(const Scene& scene, const Light& light, const Camera& camera, glm::ivec2 outputSize);

@@ -1,0 +1,161 @@
+#include "gnomon/gl/program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <sstream>
+
+#include "gnomon/base/error.h"
+#include "gnomon/base/files.h"
+
+namespace gnomon::gl {
+
+namespace {
+
+constexpr int kMaxIncludeDepth = 32;
+
+std::string declaration(const Constant& constant) {
+  if (const bool* b = std::get_if<bool>(&constant.value)) return fmt::format("const bool {} = {};\n", constant.name, *b);
+  if (const int* i = std::get_if<int>(&constant.value)) return fmt::format("const int {} = {};\n", constant.name, *i);
+  return fmt::format("const float {} = {:.9e};\n", constant.name, std::get<float>(constant.value));
+}
+
+/// The name between the quotes of an #include line, or "" when the line is none.
+std::string includedName(const std::string& line) {
+  std::size_t i = line.find_first_not_of(" \t");
+  if (i == std::string::npos || line.compare(i, 8, "#include") != 0) return {};
+  const std::size_t open = line.find('"', i + 8);
+  const std::size_t close = open == std::string::npos ? open : line.find('"', open + 1);
+  return close == std::string::npos ? std::string("?") : line.substr(open + 1, close - open - 1);
+}
+
+class Expander {
+ public:
+  explicit Expander(const ShaderSources& sources) : sources_(sources) {}
+
+  void expand(const std::string& name, const std::filesystem::path& besides, const std::string& from, int depth) {
+    if (depth > kMaxIncludeDepth) throw Error(from + ": #include nested deeper than 32");
+    const std::filesystem::path relative(name);
+    if (relative.is_absolute() || std::any_of(relative.begin(), relative.end(), [](const auto& part) { return part == ".."; })) {
+      throw Error(fmt::format("{}: \"{}\" leaves the shader folders; give a path below them", from, name));
+    }
+    std::string text;
+    std::filesystem::path path;
+    if (const auto generated = sources_.generated.find(name); generated != sources_.generated.end()) {
+      text = generated->second;
+      path = name;
+    } else {
+      path = locate(relative, besides, from);
+      text = readFile(path);
+    }
+    if (!seen_.insert(path.string()).second) return;
+    appendFile(text, path, depth);
+  }
+
+  ExpandedShader result;
+
+ private:
+  std::filesystem::path locate(const std::filesystem::path& relative, const std::filesystem::path& besides, const std::string& from) {
+    if (!besides.empty() && std::filesystem::is_regular_file(besides / relative)) return besides / relative;
+    std::string searched;
+    for (const auto& directory : sources_.directories) {
+      if (std::filesystem::is_regular_file(directory / relative)) return directory / relative;
+      searched += " " + directory.string();
+    }
+    throw Error(fmt::format("{}: no shader file \"{}\" in{}", from, relative.string(), searched));
+  }
+
+  void appendFile(const std::string& text, const std::filesystem::path& path, int depth) {
+    const int number = static_cast<int>(result.files.size());
+    result.files.push_back(path.string());
+    result.text += fmt::format("#line 1 {}\n", number);
+    std::istringstream lines(text);
+    std::string line;
+    for (int at = 1; std::getline(lines, line); ++at) {
+      const std::string name = includedName(line);
+      if (name.empty()) {
+        result.text += line + '\n';
+      } else {
+        expand(name, path.parent_path(), fmt::format("{}:{}", path.string(), at), depth + 1);
+        result.text += fmt::format("#line {} {}\n", at + 1, number);
+      }
+    }
+  }
+
+  const ShaderSources& sources_;
+  std::set<std::string> seen_;
+};
+
+/// Rewrites "0:12(5): error" (Mesa), "0(12) : error" (NVIDIA) and "ERROR: 0:12:" (others) into "file:12: ...".
+std::string withFileNames(const std::string& log, const std::vector<std::string>& files) {
+  std::istringstream lines(log);
+  std::string result;
+  std::string line;
+  while (std::getline(lines, line)) {
+    std::size_t i = 0;
+    while (i < line.size() && std::isdigit(static_cast<unsigned char>(line[i])) == 0) ++i;
+    std::size_t j = i;
+    while (j < line.size() && std::isdigit(static_cast<unsigned char>(line[j])) != 0) ++j;
+    std::size_t k = j + 1;
+    while (k < line.size() && std::isdigit(static_cast<unsigned char>(line[k])) != 0) ++k;
+    const bool located = j > i && j < line.size() && (line[j] == ':' || line[j] == '(') && k > j + 1 && j - i < 4;
+    if (located) {
+      const std::size_t file = std::stoul(line.substr(i, j - i));
+      if (file < files.size()) line = fmt::format("{}:{}: {}", files[file], line.substr(j + 1, k - j - 1), line.substr(k));
+    }
+    if (!line.empty()) result += "\n  " + line;
+  }
+  return result;
+}
+
+}  // namespace
+
+ExpandedShader expandShader(const ShaderSources& sources, const std::string& file, const std::vector<Constant>& constants) {
+  Expander expander(sources);
+  expander.result.text = "#version 450 core\n";
+  for (const Constant& constant : constants) expander.result.text += declaration(constant);
+  expander.expand(file, {}, file, 0);
+  return std::move(expander.result);
+}
+
+ProgramObject makeProgram(const ShaderSources& sources, const std::vector<ShaderStage>& stages, const std::vector<Constant>& constants,
+                          const std::string& label) {
+  ProgramObject program(glCreateProgram());
+  glObjectLabel(GL_PROGRAM, program.name(), -1, label.c_str());
+  std::vector<ShaderObject> shaders;
+  for (const ShaderStage& stage : stages) {
+    const ExpandedShader source = expandShader(sources, stage.file, constants);
+    const ShaderObject& shader = shaders.emplace_back(glCreateShader(stage.type));
+    const char* text = source.text.c_str();
+    glShaderSource(shader.name(), 1, &text, nullptr);
+    glCompileShader(shader.name());
+    GLint ok = 0;
+    glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &ok);
+    if (ok == 0) {
+      GLint length = 0;
+      glGetShaderiv(shader.name(), GL_INFO_LOG_LENGTH, &length);
+      std::string message(static_cast<std::size_t>(std::max(length, 1)), '\0');
+      glGetShaderInfoLog(shader.name(), length, nullptr, message.data());
+      message.resize(std::min(message.size(), message.find('\0')));
+      throw Error(fmt::format("shader {} does not compile:{}", stage.file, withFileNames(message, source.files)));
+    }
+    glAttachShader(program.name(), shader.name());
+  }
+  glLinkProgram(program.name());
+  GLint ok = 0;
+  glGetProgramiv(program.name(), GL_LINK_STATUS, &ok);
+  if (ok == 0) {
+    GLint length = 0;
+    glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
+    std::string message(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    glGetProgramInfoLog(program.name(), length, nullptr, message.data());
+    message.resize(std::min(message.size(), message.find('\0')));
+    throw Error(fmt::format("program {} does not link: {}", label, message));
+  }
+  for (const ShaderObject& shader : shaders) glDetachShader(program.name(), shader.name());
+  return program;
+}
+
+}  // namespace gnomon::gl

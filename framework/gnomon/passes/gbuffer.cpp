@@ -1,0 +1,85 @@
+#include "gnomon/passes/gbuffer.h"
+
+#include <cmath>
+#include <glm/mat4x4.hpp>
+#include <glm/trigonometric.hpp>
+
+namespace gnomon {
+
+namespace {
+
+/// Block View, std140.
+struct ViewBlock {
+  glm::mat4 clip;   ///< world axes relative to the camera -> clip
+  glm::vec4 size;   ///< output width, height
+  glm::vec4 look;   ///< xyz: unit view direction (world axes); w: 1 orthographic
+};
+
+/// Block LightView, std140. Everything in world axes, relative to the camera.
+struct LightViewBlock {
+  glm::vec4 position;   ///< w: LightType
+  glm::vec4 backwards;  ///< unit, from the target towards the light; w: cosine of the cone's half angle
+  glm::vec4 radiance;   ///< x: intensity
+};
+
+ViewBlock viewBlock(const FrameInputs& frame) {
+  const double aspect = static_cast<double>(frame.outputSize.x) / frame.outputSize.y;
+  const glm::dmat4 rotation = cameraRotation(frame.camera);
+  const glm::dvec3 look = -glm::dvec3(rotation[0][2], rotation[1][2], rotation[2][2]);
+  return {glm::mat4(cameraProjection(frame.camera, aspect) * rotation), glm::vec4(frame.outputSize, 0, 0),
+          glm::vec4(glm::vec3(look), frame.camera.type == CameraType::orthographic ? 1.0f : 0.0f)};
+}
+
+LightViewBlock lightViewBlock(const FrameInputs& frame) {
+  const LightFrame axes = lightFrame(frame.light);
+  const double cosine = frame.light.coneHalfAngleDegrees >= 90.0 ? 0.0 : std::cos(glm::radians(frame.light.coneHalfAngleDegrees));
+  return {glm::vec4(glm::vec3(axes.origin - frame.camera.position), static_cast<float>(frame.light.type)),
+          glm::vec4(glm::vec3(axes.z), static_cast<float>(cosine)), glm::vec4(static_cast<float>(frame.light.intensity), 0, 0, 0)};
+}
+
+}  // namespace
+
+SessionPasses sessionPasses(GraphBuilder& graph, glm::ivec2 size) {
+  SessionPasses passes;
+  passes.view = graph.buffer("View", sizeof(ViewBlock));
+  passes.lightView = graph.buffer("LightView", sizeof(LightViewBlock));
+  graph.provide("View", passes.view);
+  graph.provide("LightView", passes.lightView);
+  const DrawList visible = graph.drawList("visible instances");
+
+  graph.cpu("view", {.inputs = {Input::camera, Input::geometry}, .buffers = {passes.view}, .draws = {visible}, .run = [=](CpuContext& context) {
+                       const FrameInputs& frame = context.frame();
+                       context.writeBlock(passes.view, viewBlock(frame));
+                       context.draw(visible, std::vector<std::uint8_t>(frame.scene.instances.size(), 1), frame.camera.position);
+                     }});
+  graph.cpu("light view", {.inputs = {Input::camera, Input::light}, .buffers = {passes.lightView}, .run = [=](CpuContext& context) {
+                             context.writeBlock(passes.lightView, lightViewBlock(context.frame()));
+                           }});
+
+  GBuffer& g = passes.gbuffer;
+  g.position = graph.texture("position", {size, Format::rgba32f});
+  g.normal = graph.texture("normal", {size, Format::rgba32f});
+  g.ids = graph.texture("ids", {size, Format::rg32ui});
+  g.depth = graph.texture("depth", {size, Format::d32f_s8});
+  passes.shadingNormal = graph.texture("shading normal", {size, Format::rgba16f});
+  passes.albedo = graph.texture("albedo", {size, Format::rgba8});
+  graph.raster("g-buffer", {.vertex = "gnomon/gbuffer.vert",
+                            .fragment = "gnomon/gbuffer.frag",
+                            .draws = visible,
+                            .colours = {g.position, g.normal, g.ids, passes.shadingNormal, passes.albedo},
+                            .depth = g.depth});
+  graph.provide("gPosition", g.position);
+  graph.provide("gNormal", g.normal);
+  graph.provide("gIds", g.ids);
+  graph.provide("gShadingNormal", passes.shadingNormal);
+  graph.provide("gAlbedo", passes.albedo);
+  g.mask = graph.fullscreen("receiver mask", {.shader = "gnomon/receiver_mask.frag", .format = Format::r8});
+  graph.provide("gMask", g.mask);
+  return passes;
+}
+
+Texture shadingPass(GraphBuilder& graph, Texture visibility) {
+  return graph.fullscreen("shading", {.shader = "gnomon/shading.frag", .reads = {{"visibilityMap", visibility}}, .format = Format::rgba16f});
+}
+
+}  // namespace gnomon

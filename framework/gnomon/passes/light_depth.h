@@ -1,0 +1,42 @@
+// Depth seen from a light, in one planar map: fitted, culled, biased. Shared by every technique that reads such a map.
+#pragma once
+
+#include "gnomon/base/table.h"
+#include "gnomon/technique/technique.h"
+
+namespace gnomon {
+
+enum class MapFormat : int { d16, d24, d32f };
+
+/// Corrections against a surface shadowing itself; see shaders/gnomon/depth_map.glsl for where each enters.
+struct DepthBias {
+  float constant = 2.0f;
+  float slope = 1.0f;
+  float normal = 0.0f;
+  bool receiverPlane = false;
+  float limit = 4096.0f;
+};
+
+struct DepthMapParameters {
+  glm::ivec2 size{1024, 1024};
+  MapFormat format = MapFormat::d32f;
+  DepthBias bias;
+};
+
+/// map_size, map_format, bias.constant, bias.slope, bias.normal, bias.receiver_plane, bias.limit.
+ParameterTable<DepthMapParameters> depthMapTable();
+
+/// Refuses lights that one planar map cannot cover and maps larger than the driver allows.
+Support depthMapSupport(const SceneSurvey& survey, const Light& light, const Frame& frame, const DepthMapParameters& parameters);
+
+struct LightDepth {
+  Texture map;  ///< reversed depth: 1 at near, 0 at far and where nothing is
+};
+
+/// Declares two passes: `fit` on the CPU (the light's matrices, near and far, which casters to draw) and `light depth`.
+/// `filterRadiusTexels` is how far from the receiver's own texel the technique reads (Chebyshev): casters that could only
+/// matter beyond it are culled. Provides the block LightMap to later shaders and fills the graph's facts.
+LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapParameters& parameters, const EffectPlan& plan,
+                      double filterRadiusTexels);
+
+}  // namespace gnomon

@@ -1,0 +1,144 @@
+#include "gnomon/passes/light_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "gnomon/scene/camera.h"
+#include "gnomon/scene/survey.h"
+
+namespace gnomon {
+
+namespace {
+
+/// A box or polytope as the map sees it. Depths are along the light's axis; what reaches behind the light's plane has no
+/// bounded image under perspective and covers the map.
+struct Image2D {
+  glm::dvec2 min{std::numeric_limits<double>::infinity()};
+  glm::dvec2 max{-std::numeric_limits<double>::infinity()};
+  double nearest = std::numeric_limits<double>::infinity();
+  double farthest = -std::numeric_limits<double>::infinity();
+  bool behind = false;
+
+  void add(const MapPlane& plane, const glm::dvec3& point) {
+    const glm::dvec3 p = point - plane.axes.origin;
+    const double depth = -glm::dot(plane.axes.z, p);
+    nearest = std::min(nearest, depth);
+    farthest = std::max(farthest, depth);
+    if (plane.perspective && depth <= 0.0) {
+      behind = true;
+      return;
+    }
+    const glm::dvec2 xy(glm::dot(plane.axes.x, p), glm::dot(plane.axes.y, p));
+    const glm::dvec2 image = ((plane.perspective ? xy / depth : xy) - plane.centre) / plane.halfExtent;
+    min = glm::min(min, image);
+    max = glm::max(max, image);
+  }
+  void close() {
+    if (behind && farthest > 0.0) {
+      min = glm::dvec2(-std::numeric_limits<double>::infinity());
+      max = glm::dvec2(std::numeric_limits<double>::infinity());
+    }
+  }
+  bool overlaps(const Image2D& other, glm::dvec2 margin) const {
+    return min.x <= other.max.x + margin.x && max.x >= other.min.x - margin.x && min.y <= other.max.y + margin.y &&
+           max.y >= other.min.y - margin.y;
+  }
+};
+
+Image2D imageOf(const MapPlane& plane, const Bounds& box) {
+  Image2D image;
+  for (int i = 0; i < 8; ++i) image.add(plane, box.corner(i));
+  image.close();
+  return image;
+}
+
+}  // namespace
+
+MapPlane mapPlane(const FrameInputs& frame) {
+  MapPlane plane;
+  plane.axes = lightFrame(frame.light);
+  plane.perspective = frame.light.type != LightType::directional;
+  if (plane.perspective) {
+    plane.halfExtent = glm::dvec2(std::tan(glm::radians(frame.light.coneHalfAngleDegrees)));
+    return plane;
+  }
+  // A directional map spans all receivers, not only those in view: it must not swim when the camera moves.
+  glm::dvec2 low(std::numeric_limits<double>::infinity());
+  glm::dvec2 high(-std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < frame.scene.instances.size(); ++i) {
+    const Bounds& box = frame.instanceBounds[i];
+    if (!frame.scene.instances[i].receives || box.empty()) continue;
+    for (int c = 0; c < 8; ++c) {
+      const glm::dvec3 p = box.corner(c) - plane.axes.origin;
+      const glm::dvec2 xy(glm::dot(plane.axes.x, p), glm::dot(plane.axes.y, p));
+      low = glm::min(low, xy);
+      high = glm::max(high, xy);
+    }
+  }
+  if (low.x <= high.x) {
+    plane.centre = (low + high) * 0.5;
+    const double widest = std::max({high.x - low.x, high.y - low.y, std::numeric_limits<double>::min()});
+    // A hundredth of the width around, so that receivers at the border lie inside; never zero across.
+    plane.halfExtent = glm::max((high - low) * 0.5, glm::dvec2(widest * 1e-3)) * 1.01;
+  }
+  return plane;
+}
+
+void fitMap(const FrameInputs& frame, const MapPlane& plane, const MapFitting& how, MapFit& result) {
+  const Scene& scene = frame.scene;
+  const double aspect = static_cast<double>(frame.outputSize.x) / frame.outputSize.y;
+
+  // The region of the map that visible receivers read, and the deepest of them.
+  Image2D read;
+  for (const VisibleReceiver& receiver : visibleReceivers(scene, frame.instanceBounds, frame.camera, aspect)) {
+    Image2D image;
+    for (const glm::dvec3& point : receiver.points) image.add(plane, point);
+    image.close();
+    if (plane.perspective && image.farthest <= 0.0) continue;  // behind the light: out of its reach
+    read.min = glm::min(read.min, image.min);
+    read.max = glm::max(read.max, image.max);
+    read.nearest = std::min(read.nearest, image.nearest);
+    read.farthest = std::max(read.farthest, image.farthest);
+  }
+  const glm::dvec2 whole = glm::dvec2(1.0) + how.margin;
+  read.min = glm::max(read.min, -whole);
+  read.max = glm::min(read.max, whole);
+
+  result.casters.assign(scene.instances.size(), 0);
+  double near = std::numeric_limits<double>::infinity();
+  double sceneNear = std::numeric_limits<double>::infinity();
+  double sceneFar = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Bounds& box = frame.instanceBounds[i];
+    if (box.empty()) continue;
+    const Image2D image = imageOf(plane, box);
+    sceneNear = std::min(sceneNear, image.nearest);
+    sceneFar = std::max(sceneFar, image.farthest);
+    if (!scene.instances[i].casts) continue;
+    const bool inFront = !plane.perspective || image.farthest > 0.0;
+    const bool reaches = inFront && image.nearest <= read.farthest && image.overlaps(read, how.margin);
+    result.casters[i] = reaches || !how.cull ? 1 : 0;
+    if (reaches) near = std::min(near, image.nearest);
+  }
+
+  double far = how.fit ? read.farthest : sceneFar;
+  near = how.fit ? std::min(near, read.nearest) : sceneNear;
+  if (!std::isfinite(far) || !std::isfinite(near) || (plane.perspective && far <= 0.0)) {
+    near = plane.perspective ? 0.5 : -1.0;  // nothing to draw or to read: any volume serves
+    far = 1.0;
+  }
+  // Room for rounding, so that what lies exactly at near or far is inside.
+  const double room = 1e-6 * (plane.perspective ? far : std::max({far - near, std::abs(far), std::abs(near)}));
+  far += room;
+  near -= room;
+  if (plane.perspective) {
+    const double nearestReceiver = how.fit ? std::max(read.nearest - room, 0.0) : far;
+    near = std::max(near, std::max(std::min(nearestReceiver, far * how.nearRatio), far * 1e-12));
+  }
+  result.near = near;
+  result.far = std::max(far, near + room);
+}
+
+}  // namespace gnomon

@@ -1,0 +1,241 @@
+#include "gnomon/run/light_run.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/trigonometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "gnomon/base/clock.h"
+#include "gnomon/base/files.h"
+#include "gnomon/base/statistics.h"
+#include "gnomon/measure/classes.h"
+#include "gnomon/measure/error.h"
+#include "gnomon/run/pictures.h"
+#include "gnomon/run/reference.h"
+#include "gnomon/session.h"
+
+namespace gnomon {
+
+namespace {
+
+constexpr double kTurnDegrees = 0.5;
+constexpr int kPassTimingFrames = 3;
+
+int posesOf(const MeasureChoice& measure) { return std::max(1, measure.frames / (2 * measure.blocks)); }
+
+std::vector<Light> posesOf(const Light& light, int poses) {
+  std::vector<Light> all;
+  for (int p = 1; p < poses; ++p) all.push_back(lightAtPose(light, p, poses));
+  return all;
+}
+
+/// N.L towards the source's centre, from the G-buffer; 0 outside the mask.
+Image normalLightCosine(const Session& session, const Image& mask, const Image& positions, const Image& normals) {
+  const LightFrame axes = lightFrame(session.light());
+  Image cosine(mask.width, mask.height);
+  for (std::size_t i = 0; i < mask.pixels(); ++i) {
+    if (mask.data[i] < 0.5f) continue;
+    const glm::dvec3 p = session.camera().position + glm::dvec3(positions.data[4 * i], positions.data[4 * i + 1], positions.data[4 * i + 2]);
+    const glm::dvec3 n(normals.data[4 * i], normals.data[4 * i + 1], normals.data[4 * i + 2]);
+    cosine.data[i] = static_cast<float>(glm::dot(n, towardsCentre(session.light(), axes, p)));
+  }
+  return cosine;
+}
+
+Image firstThree(const Image& image) { return colourOf(image); }
+
+std::string processorName() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+std::vector<PlanEntry> planEntries(const EffectPlan& plan) {
+  std::vector<PlanEntry> entries;
+  for (const PlanDecision& d : plan.decisions) {
+    entries.push_back({d.name, d.on, d.reason, std::isfinite(d.value) ? std::optional<double>(d.value) : std::nullopt});
+  }
+  return entries;
+}
+
+}  // namespace
+
+Light lightAtPose(const Light& light, int pose, int poses) {
+  const double phase = 2.0 * glm::pi<double>() * pose / poses;
+  const double yaw = kTurnDegrees * std::sin(phase);
+  const double pitch = 0.5 * kTurnDegrees * (1.0 - std::cos(phase));
+  const LightFrame axes = lightFrame(light);
+  const glm::dquat turn = glm::angleAxis(glm::radians(yaw), axes.y) * glm::angleAxis(glm::radians(pitch), axes.x);
+  Light turned = light;
+  turned.position = light.target + turn * (light.position - light.target);
+  return turned;
+}
+
+struct LightRun::State {
+  const ResolvedRun& run;
+  std::size_t light;
+  Registry& registry;
+  LightRunOptions options;
+  Session session;
+  RenderedReference reference;
+  Image mask, positions, normals, classes;
+  MachineRecord machine;
+
+  State(const ResolvedRun& r, std::size_t l, Registry& g, LightRunOptions o)
+      : run(r),
+        light(l),
+        registry(g),
+        options(std::move(o)),
+        session({r.scene, r.lights[l], r.camera, r.config.output.size, r.config.plan, posesOf(r.lights[l], posesOf(r.config.measure))}),
+        reference(renderReference(session, registry, {r.reference, options.referenceCache})),
+        machine{gl::currentContextInfo().renderer, processorName()} {
+    session.runShared();
+    mask = session.receiverMask();
+    positions = session.positions();
+    normals = session.normals();
+    const Image cosine = normalLightCosine(session, mask, positions, normals);
+    const Image position3 = firstThree(positions);
+    const Image normal3 = firstThree(normals);
+    classes = classifyPixels({mask, reference.halves.a, reference.halves.b, position3, normal3, cosine});
+  }
+
+  const Light& nominal() const { return run.lights[light]; }
+  GraphRun graphRun() const { return {.checkFinite = options.checkFinite}; }
+
+  /// Moves the light and times the technique's own passes, finished before and after.
+  FrameTime timedFrame(Slot slot, const Light& pose) {
+    session.moveLight(pose);
+    return timedFrame(slot);
+  }
+  FrameTime timedFrame(Slot slot) {
+    session.runShared();
+    glFinish();
+    const double cpu = processCpuMs();
+    const double wall = wallMs();
+    session.runTechnique(slot);
+    glFinish();
+    return {processCpuMs() - cpu, wallMs() - wall};
+  }
+
+  TimeRecord time(Slot candidate, Slot baseline) {
+    TimeRecord record;
+    record.timer = options.clock;
+    const int poses = posesOf(run.config.measure);
+    TimingPlan plan{.poses = poses, .blocks = run.config.measure.blocks, .clock = *options.clock};
+    for (const std::string& regime : run.config.measure.regimes) {
+      const bool moving = regime == "dynamic";
+      session.moveLight(nominal());
+      TimingFigures figures = measurePaired(
+          [&](Side side, int pose) {
+            const Slot slot = side == Side::candidate ? candidate : baseline;
+            return moving ? timedFrame(slot, lightAtPose(nominal(), pose, poses)) : timedFrame(slot);
+          },
+          plan);
+      if (!moving) {  // nothing runs: what a ratio of two nothings says is noise
+        figures.ratio.reset();
+        figures.ratioCi95.reset();
+      }
+      record.regimes[regime] = std::move(figures);
+    }
+    record.passes = passTimes(candidate, poses);
+    session.moveLight(nominal());
+    return record;
+  }
+
+  std::vector<PassTime> passTimes(Slot slot, int poses) {
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> times;
+    for (int i = 0; i < kPassTimingFrames; ++i) {
+      session.moveLight(lightAtPose(nominal(), i % std::max(poses, 2), std::max(poses, 2)));
+      session.runShared();
+      glFinish();
+      const GraphReport report = session.runTechnique(slot, {.timePasses = true});
+      times.resize(report.passes.size());
+      names.resize(report.passes.size());
+      for (std::size_t p = 0; p < report.passes.size(); ++p) {
+        names[p] = report.passes[p].name;
+        times[p].push_back(options.clock == Clock::cpu ? report.passes[p].cpuMs : report.passes[p].wallMs);
+      }
+    }
+    std::vector<PassTime> passes;
+    for (std::size_t p = 0; p < names.size(); ++p) passes.push_back({names[p], median(times[p])});
+    return passes;
+  }
+
+  void measure(JobRecord& record, const ResolvedTechnique& technique) {
+    session.removeSlots();
+    session.moveLight(nominal());
+    const Slot slot = session.addSlot(technique.technique, technique.parameters);
+    if (!session.support(slot).ok()) {
+      record.status = JobStatus::refused;
+      record.reason = session.support(slot).refusal;
+      return;
+    }
+    const FrameReport frame = session.frame(slot, graphRun());
+    const Image visibility = session.visibility(slot);
+    record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
+    const FrameCounters& c = frame.technique.counters;
+    record.work.passesRun = c.passesRun;
+    record.work.passesSkipped = c.passesSkipped;
+    record.work.draws = c.draws;
+    record.work.primitives = c.primitives;
+    record.work.texelsWritten = c.texelsWritten;
+    record.work.rays = c.rays;
+    record.memoryBytes = session.memoryBytes(slot);
+    if (!options.imageDirectory.empty()) {
+      const Image shaded = session.shaded(slot);
+      writePictures(options.imageDirectory, record.job, run.config.output.images, options.exr,
+                    {shaded, visibility, reference.halves, mask, classes, positions, normals}, session);
+    }
+    if (options.clock) {
+      const Slot baseline = session.addSlot(run.baseline.technique, run.baseline.parameters);
+      if (session.support(baseline).ok()) record.time = time(slot, baseline);
+    }
+  }
+};
+
+LightRun::LightRun(const ResolvedRun& run, std::size_t light, Registry& registry, LightRunOptions options)
+    : state_(std::make_unique<State>(run, light, registry, std::move(options))) {}
+LightRun::~LightRun() = default;
+
+bool LightRun::referenceFromCache() const { return state_->reference.fromCache; }
+
+JobRecord LightRun::run(const ResolvedTechnique& technique) {
+  State& s = *state_;
+  JobRecord record;
+  record.job = jobKey(s.run, s.light, technique);
+  record.config = s.run.config.name;
+  record.scene = s.run.sceneName;
+  record.light = static_cast<int>(s.light);
+  record.technique = technique.name();
+  record.parametersJson = technique.parametersJson().dump();
+  record.plan = planEntries(s.session.plan());
+  record.machine = s.machine;
+  try {
+    s.measure(record, technique);
+  } catch (const std::exception& error) {
+    record.status = JobStatus::failed;
+    record.reason = error.what();
+  }
+  return record;
+}
+
+std::string jobKey(const ResolvedRun& run, std::size_t light, const ResolvedTechnique& technique) {
+  const std::string decides = fmt::format(
+      "{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {}", contentHash(run.scene), writeObject(*lightTable(), &run.lights[light]).dump(),
+      writeObject(*cameraTable(), &run.camera).dump(), run.config.output.size.x, run.config.output.size.y, technique.name(),
+      technique.parametersJson().dump(), run.reference.name(), run.reference.parametersJson().dump(), run.baseline.name(),
+      run.baseline.parametersJson().dump(), writeObject(*planOverridesTable(), &run.config.plan).dump(), run.config.measure.frames);
+  return technique.name() + "-" + hashHex(decides).substr(0, 16);
+}
+
+}  // namespace gnomon

@@ -1,0 +1,42 @@
+// Pictures of a job: PNG to look at, EXR to measure.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gnomon/base/image.h"
+#include "gnomon/measure/reference_cache.h"
+#include "gnomon/session.h"
+
+namespace gnomon {
+
+/// Full scale of the signed error's colours: at this much too dark or too bright the colour is saturated.
+inline constexpr float kErrorScale = 0.5f;
+
+/// Technique - reference: blue where too dark, white where right, red where light leaks; grey outside the receiver mask.
+Image signedErrorPicture(const Image& technique, const ReferencePair& reference, const Image& mask);
+
+/// Lit yellow, umbra dark blue, penumbra orange; the band brighter, the terminator darker; grey outside.
+Image classPicture(const Image& classes);
+
+/// The first three of four channels.
+Image colourOf(const Image& rgba);
+
+struct JobPictures {
+  const Image& shaded;
+  const Image& visibility;
+  const ReferencePair& reference;
+  const Image& mask;
+  const Image& classes;
+  const Image& positions;  ///< relative to the camera
+  const Image& normals;
+};
+
+/// Writes the pictures named in `kinds` (OutputChoice::images) as DIRECTORY/STEM_KIND.png and, with `exr`, all channels of
+/// design section 9 as DIRECTORY/STEM.exr, with light and camera as metadata. Returns the paths.
+std::vector<std::filesystem::path> writePictures(const std::filesystem::path& directory, const std::string& stem,
+                                                 const std::vector<std::string>& kinds, bool exr, const JobPictures& pictures,
+                                                 const Session& session);
+
+}  // namespace gnomon

@@ -1,0 +1,78 @@
+#include "gnomon/run/reference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "gnomon/base/files.h"
+#include "gnomon/base/json.h"
+
+namespace gnomon {
+
+namespace {
+
+/// The bytes of every shader file of the framework and of the technique, in the order of their paths.
+std::string shaderText(const std::filesystem::path& directory) {
+  std::vector<std::filesystem::path> files;
+  std::error_code ignored;
+  for (const auto& item : std::filesystem::recursive_directory_iterator(directory, ignored)) {
+    const auto extension = item.path().extension();
+    if (extension == ".glsl" || extension == ".vert" || extension == ".frag" || extension == ".comp") files.push_back(item.path());
+  }
+  std::sort(files.begin(), files.end());
+  std::string text;
+  for (const auto& file : files) text += readFile(file);
+  return text;
+}
+
+Image renderHalf(Session& session, const ResolvedTechnique& technique, std::uint64_t& rays) {
+  const Slot slot = session.addSlot(technique.technique, technique.parameters);
+  if (!session.support(slot).ok()) {
+    throw Error(fmt::format("the reference '{}' refuses: {}", technique.name(), session.support(slot).refusal));
+  }
+  const FrameReport report = session.frame(slot);
+  rays += report.technique.counters.rays;
+  Image visibility = session.visibility(slot);
+  session.removeSlots();
+  return visibility;
+}
+
+}  // namespace
+
+std::string referenceKey(const Session& session, const ResolvedTechnique& technique) {
+  const gl::ContextInfo info = gl::currentContextInfo();
+  std::string plan;
+  for (const PlanDecision& d : session.plan().decisions) plan += d.on ? '1' : '0';
+  return fmt::format("scene {}\nlight {}\ncamera {}\nsize {}x{}\ntechnique {} {}\nlibrary {}\nplan {}\nframework {}\nshaders {}\nrenderer {} {}\n",
+                     contentHash(session.scene()), writeObject(*lightTable(), &session.light()).dump(),
+                     writeObject(*cameraTable(), &session.camera()).dump(), session.outputSize().x, session.outputSize().y, technique.name(),
+                     technique.parametersJson().dump(), hashHex(readFile(technique.technique.registered->library)), plan, frameworkAbiTag(),
+                     hashHex(shaderText(installationDirectory() / "shaders") + shaderText(Registry::directory(*technique.technique.registered))),
+                     info.renderer, info.version);
+}
+
+RenderedReference renderReference(Session& session, Registry& registry, const ReferenceRequest& request) {
+  RenderedReference result;
+  const std::string key = request.cache.empty() ? std::string() : referenceKey(session, request.technique);
+  if (!request.cache.empty()) {
+    if (std::optional<ReferencePair> cached = loadReference(request.cache, key)) {
+      const glm::ivec2 size = session.outputSize();
+      if (cached->a.width == size.x && cached->a.height == size.y) return {std::move(*cached), true, 0};
+    }
+  }
+  const int* samples = reservedParameter(request.technique, "samples");
+  const bool noisy = samples != nullptr && *samples >= 2 && session.plan().has(Effect::penumbra);
+  const auto half = [&](int seedOffset) {
+    const ResolvedTechnique technique = copyOf(request.technique, registry);
+    if (noisy) *reservedParameter(technique, "samples") /= 2;
+    if (int* seed = reservedParameter(technique, "seed")) *seed = 2 * (*seed) + seedOffset;
+    return renderHalf(session, technique, result.rays);
+  };
+  result.halves.a = half(1000001);  // far from the seeds that a technique of the same kind would be given
+  result.halves.b = noisy ? half(1000002) : result.halves.a;
+  if (!request.cache.empty()) storeReference(request.cache, key, result.halves);
+  return result;
+}
+
+}  // namespace gnomon

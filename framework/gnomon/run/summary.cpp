@@ -1,0 +1,120 @@
+#include "gnomon/run/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "gnomon/base/json.h"
+
+namespace gnomon {
+
+namespace {
+
+std::size_t codePoints(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+}
+
+bool isNumeric(const std::string& cell) { return !cell.empty() && (cell[0] == '-' || cell[0] == '+' || (cell[0] >= '0' && cell[0] <= '9')); }
+
+std::string number(const std::optional<double>& value, const char* format) { return value ? fmt::format(fmt::runtime(format), *value) : "-"; }
+
+/// "taps 5, map_size 512" of the values given; defaults included, since a record holds all.
+std::string parametersOf(const JobRecord& record, const std::vector<JobRecord>& records) {
+  // Only what differs between records of the same technique tells them apart.
+  const Json mine = Json::parse(record.parametersJson, nullptr, false);
+  std::string text;
+  if (!mine.is_object()) return text;
+  for (const auto& [name, value] : mine.items()) {
+    const bool varies = std::any_of(records.begin(), records.end(), [&, &key = name, &own = value](const JobRecord& other) {
+      if (other.technique != record.technique || other.scene != record.scene) return false;
+      const Json theirs = Json::parse(other.parametersJson, nullptr, false);
+      return theirs.is_object() && theirs.contains(key) && theirs[key] != own;
+    });
+    if (varies) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text;
+}
+
+std::vector<std::string> row(const JobRecord& r, const std::vector<JobRecord>& records) {
+  std::vector<std::string> cells{r.technique, parametersOf(r, records)};
+  if (r.status != JobStatus::ok) {
+    cells.push_back(jobStatusName(r.status) + ": " + r.reason);
+    return cells;
+  }
+  const ErrorFigures error = r.error.value_or(ErrorFigures{});
+  cells.push_back(error.rmse ? fmt::format("{:.4f}{}", *error.rmse, error.rmseSe ? fmt::format(" ± {:.4f}", *error.rmseSe) : "") : "-");
+  cells.push_back(number(error.rmseBand, "{:.4f}"));
+  cells.push_back(number(error.bias, "{:+.4f}"));
+  const TimingFigures* time = nullptr;
+  if (r.time) {
+    const auto dynamic = r.time->regimes.find("dynamic");
+    if (dynamic != r.time->regimes.end()) time = &dynamic->second;
+  }
+  cells.push_back(time != nullptr ? number(time->medianMs, "{:.2f}") : "-");
+  cells.push_back(time != nullptr && time->ratio
+                      ? fmt::format("{:.1f}{}", *time->ratio,
+                                    time->ratioCi95 ? fmt::format(" [{:.1f}, {:.1f}]", time->ratioCi95->low, time->ratioCi95->high) : "")
+                      : "-");
+  return cells;
+}
+
+}  // namespace
+
+std::string alignedTable(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& cells : rows) {
+    widths.resize(std::max(widths.size(), cells.size()), 0);
+    // The last cell of a short row is a sentence: it makes no column wider.
+    const std::size_t counted = cells.size() < rows[0].size() ? cells.size() - 1 : cells.size();
+    for (std::size_t c = 0; c < counted; ++c) widths[c] = std::max(widths[c], codePoints(cells[c]));
+  }
+  std::string text;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    std::string line;
+    for (std::size_t c = 0; c < rows[r].size(); ++c) {
+      const std::string& cell = rows[r][c];
+      const std::size_t room = widths[c] > codePoints(cell) ? widths[c] - codePoints(cell) : 0;
+      const bool right = c >= 2 && (r == 0 || isNumeric(cell) || cell == "-");
+      line += (c == 0 ? "" : "  ") + (right ? std::string(room, ' ') + cell : cell + std::string(room, ' '));
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+    if (r == 0) {
+      std::size_t width = 0;
+      for (const std::size_t w : widths) width += w + 2;
+      text += std::string(width > 2 ? width - 2 : width, '-') + "\n";
+    }
+  }
+  return text;
+}
+
+std::string summaryTable(const std::vector<JobRecord>& records) {
+  std::vector<std::pair<std::string, int>> groups;
+  for (const JobRecord& r : records) {
+    const std::pair<std::string, int> group{r.scene, r.light};
+    if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
+  }
+  std::string text;
+  for (const auto& [scene, light] : groups) {
+    const JobRecord* first = nullptr;
+    std::vector<std::vector<std::string>> rows;
+    for (const JobRecord& r : records) {
+      if (r.scene != scene || r.light != light) continue;
+      if (first == nullptr || (!first->time && r.time)) first = &r;
+      rows.push_back(row(r, records));
+    }
+    const std::string timer = first->time && first->time->timer ? clockName(*first->time->timer) + " " : "";
+    rows.insert(rows.begin(), {"technique", "parameters", "RMSE", "band RMSE", "bias", timer + "ms", "x baseline"});
+    text += fmt::format("{}{}, light {}\n{}", text.empty() ? "" : "\n", scene, light, alignedTable(rows));
+    for (const JobRecord& r : records) {
+      if (r.scene == scene && r.light == light && r.error && r.error->noiseFloor) {
+        text += fmt::format("reference noise {:.4f}: nothing below it is told apart\n", *r.error->noiseFloor);
+        break;
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace gnomon

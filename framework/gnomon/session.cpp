@@ -1,0 +1,225 @@
+#include "gnomon/session.h"
+
+#include <fmt/format.h>
+
+#include "gnomon/base/error.h"
+#include "gnomon/base/files.h"
+#include "gnomon/technique/parameter_block.h"
+
+namespace gnomon {
+
+namespace {
+
+gl::ShaderSources frameworkShaders() { return {{installationDirectory() / "shaders"}, {}}; }
+
+/// One plan that holds at every pose: what any of them calls for is on.
+EffectPlan planForAll(const SessionSetup& setup, const SceneSurvey& nominal) {
+  EffectPlan plan = planEffects(nominal, setup.light, setup.camera, setup.overrides);
+  for (const Light& pose : setup.lightPoses) {
+    const EffectPlan other = planEffects(survey(setup.scene, pose, setup.camera, setup.outputSize), pose, setup.camera, setup.overrides);
+    for (std::size_t i = 0; i < plan.decisions.size(); ++i) {
+      if (other.decisions[i].on && !plan.decisions[i].on) plan.decisions[i] = other.decisions[i];
+    }
+  }
+  return plan;
+}
+
+struct SlotState {
+  std::string name;
+  std::unique_ptr<Technique> technique;
+  Support support;
+  std::unique_ptr<Graph> graph;    ///< null when refused, or when no receiver faces the light
+  Outputs outputs;
+  std::unique_ptr<Graph> shading;
+  Texture shaded;
+  std::shared_ptr<TextureResource> visibility;
+};
+
+}  // namespace
+
+struct Session::State {
+  SessionSetup setup;
+  gl::DebugMessages messages;
+  SceneSurvey survey;
+  EffectPlan plan;
+  GpuScene gpu;
+  Revisions revisions;
+  Graph shared;
+  SessionPasses passes;
+  std::shared_ptr<TextureResource> fullyLit;
+  std::vector<SlotState> slots;
+
+  explicit State(SessionSetup s)
+      : setup(std::move(s)),
+        survey(gnomon::survey(setup.scene, setup.light, setup.camera, setup.outputSize)),
+        plan(planForAll(setup, survey)),
+        gpu(setup.scene),
+        shared("session", setup.outputSize, frameworkShaders()) {
+    passes = sessionPasses(shared.builder(), setup.outputSize);
+    const std::vector<Texture> kept{passes.gbuffer.position, passes.gbuffer.normal, passes.gbuffer.ids, passes.gbuffer.depth,
+                                    passes.gbuffer.mask,     passes.shadingNormal,  passes.albedo};
+    shared.compile(kept);
+    fullyLit = std::make_shared<TextureResource>();
+    fullyLit->name = "fully lit";
+    fullyLit->info = {setup.outputSize, Format::r16f};
+    fullyLit->object = gl::makeTexture2D(GL_R16F, setup.outputSize, "fully lit");
+    const float one = 1.0f;
+    glClearTexImage(fullyLit->object.name(), 0, GL_RED, GL_FLOAT, &one);
+    messages.throwIfError("session set-up");
+  }
+
+  FrameInputs inputs() const { return {setup.scene, survey.instanceBounds, gpu, setup.light, setup.camera, setup.outputSize, 0.0}; }
+
+  GraphReport run(Graph& graph, const GraphRun& options) {
+    GraphRun all = options;
+    all.skipUnchanged = options.skipUnchanged && plan.has(Rule::skipping);
+    all.messages = &messages;
+    return graph.run(inputs(), revisions, all);
+  }
+
+  GBuffer importGBuffer(GraphBuilder& graph) const {
+    const auto bring = [&](const char* name, Texture texture) {
+      const Texture imported = graph.import(name, shared.resource(texture));
+      graph.provide(name, imported);
+      return imported;
+    };
+    const GBuffer& g = passes.gbuffer;
+    graph.provide("View", graph.import("View", shared.resource(passes.view)));
+    graph.provide("LightView", graph.import("LightView", shared.resource(passes.lightView)));
+    return {bring("gPosition", g.position), bring("gNormal", g.normal), bring("gIds", g.ids), bring("gDepth", g.depth), bring("gMask", g.mask)};
+  }
+
+  void setUpTechnique(SlotState& slot, const OpenTechnique& technique, const void* parameters) {
+    gl::ShaderSources sources = frameworkShaders();
+    sources.directories.insert(sources.directories.begin(), Registry::directory(*technique.registered));
+    slot.graph = std::make_unique<Graph>(slot.name, setup.outputSize, std::move(sources));
+    GraphBuilder& graph = slot.graph->builder();
+    const FieldTable& table = *technique.entry->parameters;
+    const std::vector<std::byte> block = parameterBlockBytes(table, parameters);
+    const Buffer buffer = graph.buffer("Parameters", block.size());
+    slot.graph->uniforms().write(buffer, block);
+    graph.provide("Parameters", buffer);
+    graph.include("parameters", parameterBlockText(table));
+    for (const Constant& constant : parameterConstants(table, parameters)) graph.constant(constant);
+
+    Frame frame{setup.outputSize, setup.light, importGBuffer(graph), 0};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &frame.maxTextureSize);
+    slot.support = slot.technique->support(survey, setup.light, frame);
+    if (!slot.support.ok()) {
+      slot.graph.reset();
+      return;
+    }
+    slot.outputs = slot.technique->setup(graph, frame, plan);
+    if (!slot.outputs.visibility) throw Error("setup gave no visibility texture");
+    slot.visibility = slot.graph->resource(slot.outputs.visibility);
+    const TextureInfo& info = slot.visibility->info;
+    if (info.size != setup.outputSize || (info.format != Format::r16f && info.format != Format::r32f)) {
+      throw Error(fmt::format("its visibility is {}x{} {}; it must be r16f or r32f of the output's size, {}x{}", info.size.x, info.size.y,
+                              formatFacts(info.format).name, setup.outputSize.x, setup.outputSize.y));
+    }
+    std::vector<Texture> outputs{slot.outputs.visibility};
+    if (slot.outputs.admissible) outputs.push_back(*slot.outputs.admissible);
+    slot.graph->compile(outputs);
+  }
+
+  void setUpShading(SlotState& slot) {
+    slot.shading = std::make_unique<Graph>("shading", setup.outputSize, frameworkShaders());
+    GraphBuilder& graph = slot.shading->builder();
+    importGBuffer(graph);
+    graph.provide("gShadingNormal", graph.import("gShadingNormal", shared.resource(passes.shadingNormal)));
+    graph.provide("gAlbedo", graph.import("gAlbedo", shared.resource(passes.albedo)));
+    slot.shaded = shadingPass(graph, graph.import("visibility", slot.visibility));
+    slot.shading->compile(std::span(&slot.shaded, 1));
+  }
+
+  SlotState& at(Slot slot) { return slots.at(slot.index); }
+};
+
+Session::Session(SessionSetup setup) : state_(std::make_unique<State>(std::move(setup))) {}
+Session::~Session() = default;
+
+const Scene& Session::scene() const { return state_->setup.scene; }
+const Light& Session::light() const { return state_->setup.light; }
+const Camera& Session::camera() const { return state_->setup.camera; }
+glm::ivec2 Session::outputSize() const { return state_->setup.outputSize; }
+const SceneSurvey& Session::survey() const { return state_->survey; }
+const EffectPlan& Session::plan() const { return state_->plan; }
+
+void Session::moveLight(const Light& light) {
+  state_->setup.light = light;
+  ++state_->revisions[Input::light];
+}
+
+void Session::moveCamera(const Camera& camera) {
+  state_->setup.camera = camera;
+  ++state_->revisions[Input::camera];
+}
+
+void Session::moveInstances(const std::vector<glm::dmat4>& worlds) {
+  std::vector<Instance>& instances = state_->setup.scene.instances;
+  if (worlds.size() != instances.size()) throw Error(fmt::format("{} transforms for {} instances", worlds.size(), instances.size()));
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    instances[i].world = worlds[i];
+    state_->survey.instanceBounds[i] = worldBounds(state_->setup.scene, instances[i]);
+  }
+  ++state_->revisions[Input::geometry];
+}
+
+Slot Session::addSlot(const OpenTechnique& technique, const std::shared_ptr<const void>& parameters) {
+  SlotState slot;
+  slot.name = technique.registered->declaration.name;
+  try {
+    slot.technique = technique.entry->create(parameters.get());
+    if (state_->plan.has(Rule::receivers)) {
+      state_->setUpTechnique(slot, technique, parameters.get());
+    } else {
+      slot.visibility = state_->fullyLit;  // nothing can be shadowed: nothing runs
+    }
+    if (slot.support.ok()) state_->setUpShading(slot);
+    state_->messages.throwIfError("set-up");
+  } catch (const std::exception& error) {
+    throw Error(fmt::format("technique '{}': {}", slot.name, error.what()));
+  }
+  state_->slots.push_back(std::move(slot));
+  return {state_->slots.size() - 1};
+}
+
+void Session::removeSlots() { state_->slots.clear(); }
+
+const Support& Session::support(Slot slot) const { return state_->at(slot).support; }
+Facts Session::facts(Slot slot) const { return state_->at(slot).graph ? state_->at(slot).graph->facts() : Facts{}; }
+std::size_t Session::memoryBytes(Slot slot) const { return state_->at(slot).graph ? state_->at(slot).graph->memoryBytes() : 0; }
+std::vector<std::string> Session::passNames(Slot slot) const {
+  return state_->at(slot).graph ? state_->at(slot).graph->passNames() : std::vector<std::string>{};
+}
+
+GraphReport Session::runShared(const GraphRun& options) { return state_->run(state_->shared, options); }
+
+GraphReport Session::runTechnique(Slot slot, const GraphRun& options) {
+  SlotState& s = state_->at(slot);
+  if (!s.graph) return {};
+  try {
+    s.technique->update(state_->inputs(), s.graph->uniforms());
+    return state_->run(*s.graph, options);
+  } catch (const std::exception& error) {
+    throw Error(fmt::format("technique '{}': {}", s.name, error.what()));
+  }
+}
+
+GraphReport Session::runShading(Slot slot, const GraphRun& options) { return state_->run(*state_->at(slot).shading, options); }
+
+FrameReport Session::frame(Slot slot, const GraphRun& options) {
+  FrameReport report;
+  report.shared = runShared(options);
+  report.technique = runTechnique(slot, options);
+  report.shading = runShading(slot, options);
+  return report;
+}
+
+Image Session::visibility(Slot slot) const { return readTexture(*state_->at(slot).visibility); }
+Image Session::shaded(Slot slot) const { return state_->at(slot).shading->read(state_->at(slot).shaded); }
+Image Session::receiverMask() const { return state_->shared.read(state_->passes.gbuffer.mask); }
+Image Session::positions() const { return state_->shared.read(state_->passes.gbuffer.position); }
+Image Session::normals() const { return state_->shared.read(state_->passes.gbuffer.normal); }
+
+}  // namespace gnomon

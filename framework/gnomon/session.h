@@ -1,0 +1,89 @@
+// A session: scene, light, camera, and technique slots, each with a graph of its own. Everything that is rendered is rendered
+// here; the runner adds a headless context and measuring, the viewer a window and input.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gnomon/base/image.h"
+#include "gnomon/gl/context.h"
+#include "gnomon/graph/graph.h"
+#include "gnomon/passes/gbuffer.h"
+#include "gnomon/technique/registry.h"
+
+namespace gnomon {
+
+/// What structure follows from. The plan is made once for it.
+struct SessionSetup {
+  Scene scene;
+  Light light;
+  Camera camera;
+  glm::ivec2 outputSize{800, 600};
+  PlanOverrides overrides;
+  std::vector<Light> lightPoses;  ///< poses that the light will take: the plan holds for all of them
+};
+
+/// Handle of a slot.
+struct Slot {
+  std::size_t index = 0;
+};
+
+struct FrameReport {
+  GraphReport shared;     ///< G-buffer and receiver mask
+  GraphReport technique;  ///< the technique's own passes
+  GraphReport shading;
+};
+
+class Session {
+ public:
+  /// A current OpenGL context is required for the session's life. Throws Error.
+  explicit Session(SessionSetup setup);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  const Scene& scene() const;
+  const Light& light() const;
+  const Camera& camera() const;
+  glm::ivec2 outputSize() const;
+  const SceneSurvey& survey() const;
+  const EffectPlan& plan() const;
+
+  /// Moves without set-up; kinds and shapes must stay.
+  void moveLight(const Light& light);
+  void moveCamera(const Camera& camera);
+  /// Replaces world transforms of instances (as many as there are): geometry changes.
+  void moveInstances(const std::vector<glm::dmat4>& worlds);
+
+  /// Sets a technique up. Its refusal, if any, is told by `refusal`; a refused slot renders nothing. Throws Error when set-up
+  /// fails. `parameters` are of the technique's entry (Registry::parameters).
+  Slot addSlot(const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
+  void removeSlots();
+
+  const Support& support(Slot slot) const;
+  /// Facts as of the last frame.
+  Facts facts(Slot slot) const;
+  std::size_t memoryBytes(Slot slot) const;
+  std::vector<std::string> passNames(Slot slot) const;
+
+  /// The three parts of a frame, in order; each runs only what changed.
+  GraphReport runShared(const GraphRun& options = {});
+  GraphReport runTechnique(Slot slot, const GraphRun& options = {});
+  GraphReport runShading(Slot slot, const GraphRun& options = {});
+  FrameReport frame(Slot slot, const GraphRun& options = {});
+
+  /// Of the last frame: V, one channel.
+  Image visibility(Slot slot) const;
+  /// Of the last frame: linear RGBA.
+  Image shaded(Slot slot) const;
+  Image receiverMask() const;
+  Image positions() const;  ///< relative to the camera, world axes; 4 channels, see GBuffer
+  Image normals() const;    ///< 4 channels
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gnomon

@@ -1,0 +1,83 @@
+// The receiver of this pixel as a depth map sees it, and the comparison with one texel.
+// A plugin that includes this inlines depthMapTable(), which gives the bias_* parameters and BIAS_RECEIVER_PLANE.
+#include "gnomon/defence.glsl"
+#include "gnomon/light_map.glsl"
+#include "gnomon/light_view.glsl"
+#include "parameters"
+
+uniform sampler2D gPosition;
+uniform sampler2D gNormal;
+uniform sampler2D gMask;
+
+struct Receiver {
+  ivec2 pixel;
+  vec2 uv;       // in the map
+  float depth;   // reversed, as stored
+  vec2 slope;    // of the receiver's plane: depth change per texel
+  float bias;    // towards the light, in stored depth
+  float limit;   // of corrections along the slope, in stored depth
+};
+
+// Below this N.L the plane through a receiver passes so near the light that float has no digits left for its slope.
+const float kSmallestCosine = 1e-6;
+// Rounding of positions that come through the camera's coordinates: a few units in the last place of a float.
+const float kPositionRounding = 4.0 * 1.1920929e-7;
+
+// Leaves pixels outside the receiver mask as the target was cleared: V = 1.
+Receiver receiverInMap() {
+  Receiver r;
+  r.pixel = ivec2(gl_FragCoord.xy);
+  if (texelFetch(gMask, r.pixel, 0).r == 0.0) discard;
+  const vec3 p = texelFetch(gPosition, r.pixel, 0).xyz;
+  const vec3 n = texelFetch(gNormal, r.pixel, 0).xyz;
+  const vec3 normal = vec3(dot(mapRowX.xyz, n), dot(mapRowY.xyz, n), dot(mapRowZ.xyz, n));
+  vec3 q = vec3(dot(mapRowX, vec4(p, 1.0)), dot(mapRowY, vec4(p, 1.0)), dot(mapRowZ, vec4(p, 1.0)));
+
+  // Normal offset: sideways by texels, as much as the receiver is inclined (Holbert 2011).
+  const float cosine = max(dot(n, normalize(towardsLight(p))), kSmallestCosine);
+  const vec2 texels = mapFootprint(-q.z);
+  const float texel = max(texels.x, texels.y);
+  q += normal * (bias_normal * texel * sqrt(max(1.0 - cosine * cosine, 0.0)));
+
+  // A receiver at or behind the light's plane has no image in the map; the mask leaves none there, the offset may put it there.
+  float d = -q.z;
+  if (GNOMON_DEFENCE(behind_light) && mapIsPerspective()) d = max(d, mapDepth.z * 0.5);
+  const vec2 image = (q.xy / (mapIsPerspective() ? d : 1.0) - mapScale.zw) * mapScale.xy;
+  r.uv = image * 0.5 + 0.5;
+  r.depth = mapDepthAt(d);
+
+  // Plane n.x = c. Perspective: 1/d = n.(X, Y, -1) / c, so that z is linear in the map and its slope is exact.
+  const vec2 perTexel = 2.0 * mapTexel.xy / mapScale.xy;
+  const float rate = mapDepthRate(d);
+  if (mapIsPerspective()) {
+    float c = dot(normal, q);
+    if (GNOMON_DEFENCE(plane_through_light)) c = min(c, -kSmallestCosine * length(q));
+    r.slope = mapDepth.x * normal.xy / c * perTexel;
+  } else {
+    float nz = normal.z;
+    if (GNOMON_DEFENCE(plane_through_light)) nz = max(nz, kSmallestCosine);
+    r.slope = mapDepth.x * normal.xy / nz * perTexel;
+  }
+  r.limit = bias_limit * texel * rate;
+  const float steepest = max(abs(r.slope.x), abs(r.slope.y));
+
+  const float quantum = mapPrecision.y * (mapPrecision.z == 0.0 ? 1.0 : mapIsPerspective() ? abs(r.depth) - mapDepth.y : 1.0);
+  // Rounding: of the position, along the axis and (times the slope) across it; of uv, in texels.
+  const float positionError = kPositionRounding * (length(p) + mapPrecision.w);
+  const float rounding = positionError * rate + (abs(r.slope.x) + abs(r.slope.y)) * (positionError / min(texels.x, texels.y) +
+                         kPositionRounding * max(mapTexel.z, mapTexel.w));
+  r.bias = bias_constant * quantum + min(rounding + bias_slope * steepest, r.limit);
+  return r;
+}
+
+// 1 if the texel under `uv` holds nothing nearer to the light than the receiver; outside the map nothing is known and all is lit.
+float isLit(sampler2D map, Receiver r, vec2 uv) {
+  if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return 1.0;
+  float depth = r.depth;
+  if (BIAS_RECEIVER_PLANE) {
+    // The texel holds the depth at its centre: compare with the receiver's plane there.
+    const vec2 fromReceiver = floor(uv * mapTexel.zw) + 0.5 - r.uv * mapTexel.zw;
+    depth += clamp(dot(r.slope, fromReceiver), -r.limit, r.limit);
+  }
+  return depth + r.bias >= textureLod(map, uv, 0.0).r ? 1.0 : 0.0;
+}

@@ -1,0 +1,157 @@
+#include "tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "gnomon/base/error.h"
+
+namespace gnomon {
+
+namespace {
+
+double largestComponent(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// Half a unit in the last place of a float, relative.
+constexpr double kRoundoff = 0.5 * 1.1920929e-7;
+
+}  // namespace
+
+Tracer::Tracer() : device_(rtcNewDevice(nullptr)) {
+  if (!device_) throw Error("Embree cannot start on this processor");
+  packets_ = rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+}
+
+void Tracer::build(const Scene& scene) {
+  ++builds_;
+  Bounds bounds;
+  for (const Instance& instance : scene.instances) bounds.add(worldBounds(scene, instance));
+  origin_ = bounds.empty() ? glm::dvec3(0.0) : bounds.centre();
+
+  scene_.reset(rtcNewScene(device_.get()));
+  rtcSetSceneFlags(scene_.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  magnitudes_.assign(scene.instances.size(), {});
+  for (std::uint32_t id = 0; id < scene.instances.size(); ++id) {
+    const Instance& instance = scene.instances[id];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    if (mesh.triangles() == 0) continue;
+    std::vector<glm::vec3> vertices(mesh.positions.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      vertices[v] = glm::vec3(glm::dvec3(instance.world * glm::dvec4(mesh.positions[v], 1.0)) - origin_);
+    }
+    std::vector<float>& magnitudes = magnitudes_[id];
+    magnitudes.resize(mesh.triangles());
+    for (std::size_t t = 0; t < magnitudes.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        magnitudes[t] = std::max(magnitudes[t], static_cast<float>(largestComponent(vertices[mesh.indices[3 * t + k]])));
+      }
+    }
+    if (!instance.casts) continue;
+    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* to = static_cast<glm::vec3*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), vertices.size()));
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                        3 * sizeof(std::uint32_t), mesh.triangles()));
+    if (to == nullptr || indices == nullptr) throw Error("no memory for the acceleration structure");
+    std::copy(vertices.begin(), vertices.end(), to);
+    std::copy(mesh.indices.begin(), mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * mesh.triangles()), indices);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene_.get(), geometry, id);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(scene_.get());
+  if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw Error("Embree could not build the acceleration structure");
+}
+
+double Tracer::magnitude(std::uint32_t instance, std::uint32_t triangle) const {
+  if (instance >= magnitudes_.size() || triangle >= magnitudes_[instance].size()) return 0.0;
+  return static_cast<double>(magnitudes_[instance][triangle]);
+}
+
+ShadowRays::ShadowRays(const Tracer& tracer) : tracer_(tracer) {
+  rtcInitIntersectContext(&context_.base);
+  context_.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context_.base.filter = &ShadowRays::rejectOwnTriangle;
+}
+
+void ShadowRays::start(const Receiver& receiver, float& visibility) {
+  counts_.push_back({&visibility});
+  instance_ = receiver.instance;
+  triangle_ = receiver.triangle;
+  normal_ = receiver.normal;
+  const glm::dvec3 position = receiver.position - tracer_.origin();
+  // The position was interpolated in float relative to the camera, and its triangle's corners are floats relative to the
+  // tracer's origin: both may be off by a few roundings of the largest coordinate that took part. Starting that far off the
+  // plane keeps coplanar neighbours from blocking.
+  const double largest = std::max(tracer_.magnitude(instance_, triangle_), largestComponent(position));
+  const double error = 16.0 * kRoundoff * (largest + receiver.toCamera);
+  origin_ = position + normal_ * error;
+}
+
+void ShadowRays::add(const glm::dvec3& sample, bool direction) {
+  const glm::dvec3 towards = direction ? sample : sample - tracer_.origin() - origin_;
+  if (glm::dot(normal_, towards) <= 0.0) return;
+  const std::size_t lane = filled_++;
+  rays_.org_x[lane] = static_cast<float>(origin_.x);
+  rays_.org_y[lane] = static_cast<float>(origin_.y);
+  rays_.org_z[lane] = static_cast<float>(origin_.z);
+  rays_.dir_x[lane] = static_cast<float>(towards.x);
+  rays_.dir_y[lane] = static_cast<float>(towards.y);
+  rays_.dir_z[lane] = static_cast<float>(towards.z);
+  rays_.tnear[lane] = 0.0f;
+  rays_.tfar[lane] = direction ? std::numeric_limits<float>::infinity() : 1.0f;
+  rays_.mask[lane] = ~0U;
+  rays_.time[lane] = 0.0f;
+  rays_.flags[lane] = 0;
+  rays_.id[lane] = static_cast<unsigned>(lane);
+  context_.instance[lane] = instance_;
+  context_.triangle[lane] = triangle_;
+  owner_[lane] = counts_.size() - 1;
+  ++counts_.back().rays;
+  if (filled_ == kWidth) flush();
+}
+
+void ShadowRays::flush() {
+  if (filled_ == 0) return;
+  traced_ += filled_;
+  if (tracer_.packets()) {
+    alignas(64) std::array<int, kWidth> valid{};
+    for (std::size_t lane = 0; lane < filled_; ++lane) valid[lane] = -1;
+    rtcOccluded16(valid.data(), tracer_.scene(), &context_.base, &rays_);
+  } else {
+    for (std::size_t lane = 0; lane < filled_; ++lane) {
+      RTCRay ray{rays_.org_x[lane], rays_.org_y[lane], rays_.org_z[lane], rays_.tnear[lane], rays_.dir_x[lane], rays_.dir_y[lane],
+                 rays_.dir_z[lane], 0.0f, rays_.tfar[lane], ~0U, rays_.id[lane], 0};
+      rtcOccluded1(tracer_.scene(), &context_.base, &ray);
+      rays_.tfar[lane] = ray.tfar;
+    }
+  }
+  for (std::size_t lane = 0; lane < filled_; ++lane) {
+    if (rays_.tfar[lane] < 0.0f) ++counts_[owner_[lane]].blocked;  // Embree marks a blocked ray by -inf
+  }
+  filled_ = 0;
+}
+
+void ShadowRays::finish() {
+  flush();
+  for (const Count& count : counts_) {
+    *count.visibility = count.rays == 0 ? 1.0f : static_cast<float>(count.rays - count.blocked) / static_cast<float>(count.rays);
+  }
+  counts_.clear();
+}
+
+void ShadowRays::rejectOwnTriangle(const RTCFilterFunctionNArguments* arguments) {
+  const auto* context = reinterpret_cast<const Context*>(arguments->context);
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const unsigned lane = RTCRayN_id(arguments->ray, n, i);
+    if (RTCHitN_geomID(arguments->hit, n, i) == context->instance[lane] && RTCHitN_primID(arguments->hit, n, i) == context->triangle[lane]) {
+      arguments->valid[i] = 0;
+    }
+  }
+}
+
+}  // namespace gnomon

@@ -1,0 +1,38 @@
+// The headless runner's commands. Each returns the process's exit code: 0 success, 1 some jobs failed, 2 bad usage or input.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gnomon {
+
+/// Options that every command takes.
+struct CommonOptions {
+  std::vector<std::filesystem::path> techniqueDirectories;
+  bool json = false;
+  int gpu = -1;
+  bool debug = false;
+};
+
+struct RenderOptions {
+  std::vector<std::filesystem::path> configs;
+  std::filesystem::path out;
+  std::filesystem::path cache;
+  bool noCache = false;
+  bool resume = false;
+  bool exr = true;
+  bool checkFinite = false;
+  bool measureTime = true;
+  std::string shard;  ///< "i/n"
+};
+
+int listCommand(const CommonOptions& common);
+int describeCommand(const CommonOptions& common, const std::string& technique);
+int scenesCommand(const CommonOptions& common);
+int validateCommand(const CommonOptions& common, const std::vector<std::filesystem::path>& files);
+int schemaCommand(const std::filesystem::path& directory);
+int planCommand(const CommonOptions& common, const std::filesystem::path& config);
+int renderCommand(const CommonOptions& common, const RenderOptions& options);
+
+}  // namespace gnomon

@@ -1,0 +1,178 @@
+// list, describe, scenes, validate, schema: what needs no GPU.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "gnomon/base/files.h"
+#include "gnomon/base/json.h"
+#include "gnomon/base/log.h"
+#include "gnomon/run/config.h"
+#include "gnomon/run/resolve.h"
+#include "gnomon/scene/builtin.h"
+#include "gnomon/scene/gltf.h"
+#include "gnomon/technique/registry.h"
+#include "tools.h"
+
+namespace gnomon {
+
+namespace {
+
+const char* roleName(TechniqueRole role) {
+  return role == TechniqueRole::reference ? "reference" : role == TechniqueRole::floor ? "floor" : "technique";
+}
+
+const char* bindingName(Binding binding) {
+  return binding == Binding::structure ? "structure" : binding == Binding::specialise ? "specialise" : "uniform";
+}
+
+void warnOfBrokenFiles(const Registry& registry) {
+  for (const Problem& problem : registry.problems().list()) log::warning(problem.line());
+}
+
+/// What kind of file it is, by its name and content; empty when it is none of ours.
+enum class FileKind { runConfig, techniqueFile, gltf, unknown };
+
+FileKind kindOf(const std::filesystem::path& file) {
+  const auto extension = file.extension();
+  if (extension == ".glb" || extension == ".gltf") return FileKind::gltf;
+  if (extension != ".json") return FileKind::unknown;
+  const Json json = Json::parse(readFile(file), nullptr, false);
+  // Only a technique file has an object of techniques; a run config has a list.
+  return json.is_object() && (json.contains("library") || (json.contains("techniques") && json["techniques"].is_object())) ? FileKind::techniqueFile
+                                                                                                                        : FileKind::runConfig;
+}
+
+void validateTechniqueFile(const std::filesystem::path& file, Problems& problems) {
+  const Registry registry({file.parent_path().empty() ? "." : file.parent_path()});
+  Problems own;
+  for (const Problem& p : registry.problems().list()) {
+    if (std::filesystem::path(p.file).filename() == file.filename()) own.add(file.string(), p.pointer, p.message);
+  }
+  problems.append(own);
+  if (!own.empty()) return;
+  Registry opened({file.parent_path().empty() ? "." : file.parent_path()});
+  for (const RegisteredTechnique& t : opened.techniques()) {
+    if (t.file.filename() != file.filename()) continue;
+    try {
+      const OpenTechnique open = opened.open(t.declaration.name);
+      opened.parameters(open, Json::object(), {}, problems);
+    } catch (const InputError& error) {
+      for (const Problem& p : error.problems()) problems.add(p.file, p.pointer, p.message);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> techniqueDirectories(const CommonOptions& common) {
+  std::vector<std::filesystem::path> directories{installationDirectory() / "plugins"};
+  directories.insert(directories.end(), common.techniqueDirectories.begin(), common.techniqueDirectories.end());
+  return directories;
+}
+
+Problems unique(const Problems& problems) {
+  Problems result;
+  std::vector<std::string> seen;
+  for (const Problem& p : problems.list()) {
+    if (std::find(seen.begin(), seen.end(), p.line()) != seen.end()) continue;
+    seen.push_back(p.line());
+    result.add(p.file, p.pointer, p.message);
+  }
+  return result;
+}
+
+int listCommand(const CommonOptions& common) {
+  const Registry registry(techniqueDirectories(common));
+  warnOfBrokenFiles(registry);
+  if (common.json) {
+    Json list = Json::array();
+    for (const RegisteredTechnique& t : registry.techniques()) {
+      list.push_back({{"name", t.declaration.name}, {"title", t.declaration.title}, {"role", roleName(t.declaration.role)}, {"file", t.file.string()}});
+    }
+    fmt::print("{}\n", list.dump(2));
+    return 0;
+  }
+  std::size_t width = 0;
+  for (const RegisteredTechnique& t : registry.techniques()) width = std::max(width, t.declaration.name.size());
+  for (const RegisteredTechnique& t : registry.techniques()) {
+    const std::string role = t.declaration.role == TechniqueRole::technique ? "" : fmt::format("  ({})", roleName(t.declaration.role));
+    fmt::print("{:<{}}  {}{}\n", t.declaration.name, width, t.declaration.title, role);
+  }
+  return 0;
+}
+
+int describeCommand(const CommonOptions& common, const std::string& name) {
+  Registry registry(techniqueDirectories(common));
+  const OpenTechnique technique = registry.open(name);
+  const Entry& entry = *technique.entry;
+  Problems problems;
+  const std::shared_ptr<void> values = registry.parameters(technique, Json::object(), {}, problems);
+  problems.throwIfAny();
+  const TechniqueDeclaration& declared = technique.registered->declaration;
+  if (common.json) {
+    Json json{{"name", declared.name}, {"title", declared.title}, {"role", roleName(declared.role)}, {"paper", entry.notes.paper},
+              {"summary", entry.notes.summary}, {"schema", schemaOf(*entry.parameters, values.get())}};
+    fmt::print("{}\n", json.dump(2));
+    return 0;
+  }
+  fmt::print("{}: {}\n", declared.name, declared.title);
+  if (!entry.notes.summary.empty()) fmt::print("  {}\n", entry.notes.summary);
+  if (!entry.notes.paper.empty()) fmt::print("  {}\n", entry.notes.paper);
+  fmt::print("  role {}, {}\n", roleName(declared.role), technique.registered->file.string());
+  if (entry.parameters->fields().empty()) fmt::print("\nno parameters\n");
+  if (!entry.parameters->fields().empty()) fmt::print("\n{:<20} {:<12} {:<11} {}\n", "parameter", "value", "binding", "allowed, meaning");
+  for (const Field& field : entry.parameters->fields()) {
+    fmt::print("{:<20} {:<12} {:<11} {}; {}\n", field.name, valueText(field, values.get()), bindingName(field.binding), allowedText(field), field.meaning);
+  }
+  return 0;
+}
+
+int scenesCommand(const CommonOptions& common) {
+  Json list = Json::array();
+  for (const BuiltinScene& scene : builtinScenes()) {
+    if (common.json) {
+      list.push_back({{"name", scene.name}, {"purpose", scene.purpose}, {"keys", scene.table->names()}});
+      continue;
+    }
+    std::string keys;
+    for (const Field& field : scene.table->fields()) keys += fmt::format("{}{} ({})", keys.empty() ? "  keys: " : ", ", field.name, valueText(field, &scene.defaults));
+    fmt::print("{:<13} {}\n{:<13} {} triangles{}\n", scene.name, scene.purpose, "", scene.make(scene.defaults).triangles(), keys);
+  }
+  if (common.json) fmt::print("{}\n", list.dump(2));
+  return 0;
+}
+
+int validateCommand(const CommonOptions& common, const std::vector<std::filesystem::path>& files) {
+  Registry registry(techniqueDirectories(common));
+  Problems problems = registry.problems();
+  for (const auto& file : files) {
+    try {
+      switch (kindOf(file)) {
+        case FileKind::runConfig: resolveRun(file, registry, problems); break;
+        case FileKind::techniqueFile: validateTechniqueFile(file, problems); break;
+        case FileKind::gltf:
+          for (const std::string& warning : loadGltf(file).warnings) log::warning(file.string() + ": " + warning);
+          break;
+        case FileKind::unknown: problems.add(file.string(), "", "is neither JSON (run config, technique file) nor glTF (.gltf, .glb)"); break;
+      }
+    } catch (const InputError& error) {
+      for (const Problem& p : error.problems()) problems.add(p.file, p.pointer, p.message);
+    } catch (const Error& error) {
+      problems.add(file.string(), "", error.what());
+    }
+  }
+  unique(problems).throwIfAny();
+  fmt::print("{} file{} valid\n", files.size(), files.size() == 1 ? " is" : "s are");
+  return 0;
+}
+
+int schemaCommand(const std::filesystem::path& directory) {
+  writeFileAtomically(directory / "run.schema.json", runConfigSchema().dump(2) + "\n");
+  writeFileAtomically(directory / "technique.schema.json", techniqueFileSchema().dump(2) + "\n");
+  fmt::print("wrote {} and {}\n", (directory / "run.schema.json").string(), (directory / "technique.schema.json").string());
+  return 0;
+}
+
+}  // namespace gnomon

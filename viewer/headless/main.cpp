@@ -1,0 +1,109 @@
+// gnomon: the headless runner.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "commands.h"
+#include "gnomon/base/error.h"
+#include "gnomon/base/log.h"
+
+namespace {
+
+using namespace gnomon;
+
+int run(int argc, char** argv) {
+  CLI::App app{"Gnomon: which shadow technique is accurate enough, what does that cost, and does it stay stable?", "gnomon"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", GNOMON_VERSION);
+  app.failure_message(CLI::FailureMessage::simple);
+  app.footer("Exit codes: 0 success, 1 some jobs failed, 2 bad usage or input.");
+
+  CommonOptions common;
+  RenderOptions render;
+  std::string technique;
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path config;
+  std::filesystem::path schemaDirectory;
+  int exitCode = 0;
+
+  const auto addCommon = [&](CLI::App* command, bool needsGpu) {
+    command->add_option("--technique-dir", common.techniqueDirectories, "further folders with technique JSON files");
+    if (!needsGpu) return;
+    command->add_option("--gpu", common.gpu, "index of the GPU; without it the first, or software rendering where there is none");
+    command->add_flag("--debug", common.debug, "a debug context: slower, the driver says more");
+  };
+
+  CLI::App* list = app.add_subcommand("list", "registered techniques; loads no code");
+  addCommon(list, false);
+  list->add_flag("--json", common.json, "for programs");
+  list->callback([&] { exitCode = listCommand(common); });
+
+  CLI::App* describe = app.add_subcommand("describe", "a technique's parameters with unit, range and meaning");
+  addCommon(describe, false);
+  describe->add_option("technique", technique, "its name")->required();
+  describe->add_flag("--json", common.json, "for programs");
+  describe->callback([&] { exitCode = describeCommand(common, technique); });
+
+  CLI::App* scenes = app.add_subcommand("scenes", "built-in scenes and what each is for");
+  scenes->add_flag("--json", common.json, "for programs");
+  scenes->callback([&] { exitCode = scenesCommand(common); });
+
+  CLI::App* validate = app.add_subcommand("validate", "checks run configs, technique files and glTF; reports every fault");
+  addCommon(validate, false);
+  validate->add_option("files", files, "files to check")->required();
+  validate->callback([&] { exitCode = validateCommand(common, files); });
+
+  CLI::App* plan = app.add_subcommand("plan", "which effects a config's scene calls for, and why");
+  addCommon(plan, false);
+  plan->add_option("config", config, "run config")->required();
+  plan->add_flag("--json", common.json, "for programs");
+  plan->callback([&] { exitCode = planCommand(common, config); });
+
+  const auto addRender = [&](CLI::App* command) {
+    addCommon(command, true);
+    command->add_option("--cache", render.cache, "folder of cached references (default: the user's cache folder)");
+    command->add_flag("--no-cache", render.noCache, "render references anew and keep none");
+    command->add_flag("!--no-exr", render.exr, "write no EXR files");
+    command->add_flag("--check-finite", render.checkFinite, "look for NaN and infinity in every texture of every pass");
+  };
+  CLI::App* rendering = app.add_subcommand("render", "pictures and error of each technique in a config, without times");
+  addRender(rendering);
+  rendering->add_option("config", render.configs, "run config")->required()->expected(1);
+  rendering->add_option("--out", render.out, "folder for pictures and results")->default_val("out/render");
+  rendering->callback([&] {
+    render.measureTime = false;
+    exitCode = renderCommand(common, render);
+  });
+
+  CLI::App* batch = app.add_subcommand("batch", "pictures, error and time of each technique in each config");
+  addRender(batch);
+  batch->add_option("configs", render.configs, "run configs")->required();
+  batch->add_option("--out", render.out, "folder for pictures and results")->required();
+  batch->add_flag("--resume", render.resume, "keep the results that are there and run what is missing");
+  batch->add_option("--shard", render.shard, "i/n: take every n-th job, from the i-th (0-based)");
+  batch->callback([&] { exitCode = renderCommand(common, render); });
+
+  CLI::App* schema = app.add_subcommand("schema", "writes the JSON Schemas that editors use");
+  schema->add_option("directory", schemaDirectory, "where to")->default_val("configs/schema");
+  schema->callback([&] { exitCode = schemaCommand(schemaDirectory); });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return exitCode;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const gnomon::InputError& error) {
+    for (const gnomon::Problem& problem : error.problems()) gnomon::log::error(problem.line());
+    return 2;
+  } catch (const std::exception& error) {
+    gnomon::log::error(error.what());
+    return 2;
+  }
+}
