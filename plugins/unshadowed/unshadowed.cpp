@@ -1,7 +1,7 @@
 // No shadows: V = 1 everywhere.
 //
-// The floor of every cost: one full-screen pass that writes a constant. What a technique costs more than this is what its
-// shadows cost.
+// The floor of every cost: one pass over the receivers that writes a constant. What a technique costs more than this is what
+// its shadows cost.
 #include <gnomon/plugin.h>
 
 namespace gnomon {
@@ -18,7 +18,7 @@ class Unshadowed final : public Technique {
   }
 
   Outputs setup(GraphBuilder& graph, const Frame& /*frame*/, const EffectPlan& /*plan*/) override {
-    return {.visibility = graph.fullscreen("constant", {.shader = "unshadowed.frag", .format = Format::r16f})};
+    return {.visibility = graph.fullscreen("constant", {.shader = "unshadowed.frag", .format = Format::r16f, .clear = glm::vec4(1.0f)})};
   }
 };
 

@@ -72,17 +72,6 @@ std::vector<std::filesystem::path> techniqueDirectories(const CommonOptions& com
   return directories;
 }
 
-Problems unique(const Problems& problems) {
-  Problems result;
-  std::vector<std::string> seen;
-  for (const Problem& p : problems.list()) {
-    if (std::find(seen.begin(), seen.end(), p.line()) != seen.end()) continue;
-    seen.push_back(p.line());
-    result.add(p.file, p.pointer, p.message);
-  }
-  return result;
-}
-
 int listCommand(const CommonOptions& common) {
   const Registry registry(techniqueDirectories(common));
   warnOfBrokenFiles(registry);
@@ -150,7 +139,7 @@ int validateCommand(const CommonOptions& common, const std::vector<std::filesyst
   for (const auto& file : files) {
     try {
       switch (kindOf(file)) {
-        case FileKind::runConfig: resolveRun(file, registry, problems); break;
+        case FileKind::runConfig: resolveRuns(file, registry, problems); break;
         case FileKind::techniqueFile: validateTechniqueFile(file, problems); break;
         case FileKind::gltf:
           for (const std::string& warning : loadGltf(file).warnings) log::warning(file.string() + ": " + warning);
@@ -163,7 +152,7 @@ int validateCommand(const CommonOptions& common, const std::vector<std::filesyst
       problems.add(file.string(), "", error.what());
     }
   }
-  unique(problems).throwIfAny();
+  problems.unique().throwIfAny();
   fmt::print("{} file{} valid\n", files.size(), files.size() == 1 ? " is" : "s are");
   return 0;
 }

@@ -64,24 +64,25 @@ int planCommand(const CommonOptions& common, const std::filesystem::path& config
   Problems problems;
   const RunConfig read = readRunConfig(config, problems);
   problems.throwIfAny();
-  const Scene scene = loadScene(read.scene);
-  const std::vector<Light> lights = read.lights.value_or(scene.lights);
-  const Camera camera = read.camera.value_or(scene.camera.value_or(Camera{}));
-  if (lights.empty()) throw InputError({{config.string(), "/lights", "neither the config nor its scene has a light"}});
   Json all = Json::array();
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    const SceneSurvey facts = survey(scene, lights[i], camera, read.output.size);
-    const EffectPlan plan = planEffects(facts, lights[i], camera, read.plan);
-    if (common.json) {
-      Json decisions = Json::array();
-      for (const PlanDecision& d : plan.decisions) decisions.push_back(writeObject(*planDecisionTable(), &d));
-      all.push_back({{"light", i}, {"plan", decisions}});
-      continue;
+  for (const SceneChoice& choice : read.scenes) {
+    const Scene scene = loadScene(choice, {config.string(), "/scene"});
+    const std::string name = choice.builtin.empty() ? choice.file.filename().string() : choice.builtin;
+    const std::vector<Light> lights = read.lights.value_or(scene.lights);
+    const Camera camera = read.camera.value_or(scene.camera.value_or(Camera{}));
+    if (lights.empty()) throw InputError({{config.string(), "/lights", "neither the config nor " + name + " has a light"}});
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      const SceneSurvey facts = survey(scene, lights[i], camera, read.output.size);
+      const EffectPlan plan = planEffects(facts, lights[i], camera, read.plan);
+      if (common.json) {
+        Json decisions = Json::array();
+        for (const PlanDecision& d : plan.decisions) decisions.push_back(writeObject(*planDecisionTable(), &d));
+        all.push_back({{"scene", name}, {"light", i}, {"plan", decisions}});
+      } else {
+        fmt::print("{}, light {}: {} triangles, {} cast, {} receive\n", name, i, facts.triangles, facts.casterTriangles, facts.receiverTriangles);
+        for (const PlanDecision& d : plan.decisions) fmt::print("  {:<21} {:<4} {}\n", d.name, d.on ? "on" : "off", d.reason);
+      }
     }
-    fmt::print("{}light {}: {} triangles, {} cast, {} receive\n", i == 0 ? "" : "\n", i, facts.triangles, facts.casterTriangles, facts.receiverTriangles);
-    std::vector<std::vector<std::string>> rows{{"effect", "", "why"}};
-    for (const PlanDecision& d : plan.decisions) rows.push_back({d.name, d.on ? "on" : "off", d.reason});
-    for (const auto& row : rows) fmt::print("{:<22} {:<4} {}\n", row[0], row[1], row[2]);
   }
   if (common.json) fmt::print("{}\n", all.dump(2));
   return 0;
@@ -96,8 +97,10 @@ int renderCommand(const CommonOptions& common, const RenderOptions& options) {
 
   Problems problems;
   std::vector<ResolvedRun> runs;
-  for (const auto& config : options.configs) runs.push_back(resolveRun(config, registry, problems));
-  unique(problems).throwIfAny();
+  for (const auto& config : options.configs) {
+    for (ResolvedRun& run : resolveRuns(config, registry, problems)) runs.push_back(std::move(run));
+  }
+  problems.throwIfAny();
   for (const ResolvedRun& run : runs) {
     for (const std::string& warning : run.scene.warnings) log::warning(run.sceneName + ": " + warning);
   }

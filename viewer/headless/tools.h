@@ -12,7 +12,4 @@ namespace gnomon {
 /// The installation's technique folder, then those of --technique-dir.
 std::vector<std::filesystem::path> techniqueDirectories(const CommonOptions& common);
 
-/// The same problems, each once: a wrong parameter is found for every light and every value of a sweep.
-Problems unique(const Problems& problems);
-
 }  // namespace gnomon

@@ -1,5 +1,6 @@
 #include "gnomon/base/error.h"
 
+#include <set>
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
@@ -42,6 +43,15 @@ std::string Problem::line() const {
   if (!file.empty()) text += file + ": ";
   if (!pointer.empty()) text += pointer + ": ";
   return text + message;
+}
+
+Problems Problems::unique() const {
+  Problems result;
+  std::set<std::string> seen;
+  for (const Problem& problem : list_) {
+    if (seen.insert(problem.line()).second) result.list_.push_back(problem);
+  }
+  return result;
 }
 
 void Problems::throwIfAny() const {

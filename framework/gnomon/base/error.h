@@ -32,6 +32,8 @@ class Problems {
   }
   void append(const Problems& other) { list_.insert(list_.end(), other.list_.begin(), other.list_.end()); }
   bool empty() const { return list_.empty(); }
+  /// The same problems, each once.
+  Problems unique() const;
   const std::vector<Problem>& list() const { return list_; }
   /// Throws InputError if anything was collected.
   void throwIfAny() const;

@@ -147,8 +147,9 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& /*frame*/, const DepthMa
                     .draws = {casters},
                     .run = [=](CpuContext& context) {
                       const FrameInputs& frame = context.frame();
-                      const MapPlane plane = mapPlane(frame);
-                      fitMap(frame, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = precision.nearRatio}, *scratch);
+                      const MapSubject subject = mapSubject(frame);
+                      const MapPlane plane = mapPlane(subject);
+                      fitMap(subject, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = precision.nearRatio}, *scratch);
                       context.writeBlock(lightMap, lightMapBlock(frame, plane, *scratch, mapSize, precision));
                       context.draw(casters, scratch->casters, plane.axes.origin);
                       Facts& now = context.facts();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <limits>
 
 #include "gnomon/scene/camera.h"
 #include "gnomon/scene/survey.h"
@@ -54,22 +55,59 @@ Image2D imageOf(const MapPlane& plane, const Bounds& box) {
   return image;
 }
 
+/// What of the map receivers read, between which depths.
+Image2D imageOf(const MapPlane& plane, const std::vector<VisibleReceiver>& receivers) {
+  Image2D all;
+  for (const VisibleReceiver& receiver : receivers) {
+    Image2D image;
+    for (const glm::dvec3& point : receiver.points) image.add(plane, point);
+    image.close();
+    if (plane.perspective && image.farthest <= 0.0) continue;  // behind the light: out of its reach
+    all.min = glm::min(all.min, image.min);
+    all.max = glm::max(all.max, image.max);
+    all.nearest = std::min(all.nearest, image.nearest);
+    all.farthest = std::max(all.farthest, image.farthest);
+  }
+  return all;
+}
+
+/// Appends the half-spaces of the map's pyramid, as wide as the map with its margin, relative to `origin`: what a spot lights
+/// lies inside. A directional map spans all receivers and needs none. Without them a floor that passes under the light would
+/// pull near to the light's plane and spread over the whole map.
+void addPyramid(const MapPlane& plane, const glm::dvec2& margin, const glm::dvec3& origin, std::vector<glm::dvec4>& planes) {
+  if (!plane.perspective) return;
+  const auto add = [&](const glm::dvec3& axis, double tangent) {  // axis.p <= tangent * depth
+    const glm::dvec3 n = glm::normalize(-axis - plane.axes.z * tangent);
+    planes.emplace_back(n, glm::dot(n, origin - plane.axes.origin));
+  };
+  const glm::dvec2 tangent = plane.halfExtent * (1.0 + margin);
+  add(plane.axes.x, tangent.x);
+  add(-plane.axes.x, tangent.x);
+  add(plane.axes.y, tangent.y);
+  add(-plane.axes.y, tangent.y);
+}
+
 }  // namespace
 
-MapPlane mapPlane(const FrameInputs& frame) {
+MapSubject mapSubject(const FrameInputs& frame) {
+  return {frame.scene, frame.instanceBounds, frame.light, frame.camera,
+          static_cast<double>(frame.outputSize.x) / frame.outputSize.y};
+}
+
+MapPlane mapPlane(const MapSubject& subject) {
   MapPlane plane;
-  plane.axes = lightFrame(frame.light);
-  plane.perspective = frame.light.type != LightType::directional;
+  plane.axes = lightFrame(subject.light);
+  plane.perspective = subject.light.type != LightType::directional;
   if (plane.perspective) {
-    plane.halfExtent = glm::dvec2(std::tan(glm::radians(frame.light.coneHalfAngleDegrees)));
+    plane.halfExtent = glm::dvec2(std::tan(glm::radians(subject.light.coneHalfAngleDegrees)));
     return plane;
   }
   // A directional map spans all receivers, not only those in view: it must not swim when the camera moves.
   glm::dvec2 low(std::numeric_limits<double>::infinity());
   glm::dvec2 high(-std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < frame.scene.instances.size(); ++i) {
-    const Bounds& box = frame.instanceBounds[i];
-    if (!frame.scene.instances[i].receives || box.empty()) continue;
+  for (std::size_t i = 0; i < subject.scene.instances.size(); ++i) {
+    const Bounds& box = subject.instanceBounds[i];
+    if (!subject.scene.instances[i].receives || box.empty()) continue;
     for (int c = 0; c < 8; ++c) {
       const glm::dvec3 p = box.corner(c) - plane.axes.origin;
       const glm::dvec2 xy(glm::dot(plane.axes.x, p), glm::dot(plane.axes.y, p));
@@ -86,22 +124,15 @@ MapPlane mapPlane(const FrameInputs& frame) {
   return plane;
 }
 
-void fitMap(const FrameInputs& frame, const MapPlane& plane, const MapFitting& how, MapFit& result) {
-  const Scene& scene = frame.scene;
-  const double aspect = static_cast<double>(frame.outputSize.x) / frame.outputSize.y;
+void fitMap(const MapSubject& subject, const MapPlane& plane, const MapFitting& how, MapFit& result) {
+  const Scene& scene = subject.scene;
+  const glm::dvec3& eye = subject.camera.position;
 
   // The region of the map that visible receivers read, and the deepest of them.
-  Image2D read;
-  for (const VisibleReceiver& receiver : visibleReceivers(scene, frame.instanceBounds, frame.camera, aspect)) {
-    Image2D image;
-    for (const glm::dvec3& point : receiver.points) image.add(plane, point);
-    image.close();
-    if (plane.perspective && image.farthest <= 0.0) continue;  // behind the light: out of its reach
-    read.min = glm::min(read.min, image.min);
-    read.max = glm::max(read.max, image.max);
-    read.nearest = std::min(read.nearest, image.nearest);
-    read.farthest = std::max(read.farthest, image.farthest);
-  }
+  const std::array<glm::dvec4, 5> frustum = frustumPlanes(subject.camera, subject.aspect);
+  std::vector<glm::dvec4> planes(frustum.begin(), frustum.end());
+  addPyramid(plane, how.margin, eye, planes);
+  Image2D read = imageOf(plane, receiversWithin(scene, subject.instanceBounds, eye, planes));
   const glm::dvec2 whole = glm::dvec2(1.0) + how.margin;
   read.min = glm::max(read.min, -whole);
   read.max = glm::min(read.max, whole);
@@ -111,7 +142,7 @@ void fitMap(const FrameInputs& frame, const MapPlane& plane, const MapFitting& h
   double sceneNear = std::numeric_limits<double>::infinity();
   double sceneFar = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Bounds& box = frame.instanceBounds[i];
+    const Bounds& box = subject.instanceBounds[i];
     if (box.empty()) continue;
     const Image2D image = imageOf(plane, box);
     sceneNear = std::min(sceneNear, image.nearest);
@@ -134,8 +165,14 @@ void fitMap(const FrameInputs& frame, const MapPlane& plane, const MapFitting& h
   far += room;
   near -= room;
   if (plane.perspective) {
-    const double nearestReceiver = how.fit ? std::max(read.nearest - room, 0.0) : far;
-    near = std::max(near, std::max(std::min(nearestReceiver, far * how.nearRatio), far * 1e-12));
+    // Casters nearer than near are clamped to it and still block; receivers nearer than near would be lit.
+    double nearestReceiver = read.nearest;
+    if (!how.fit) {
+      planes.clear();
+      addPyramid(plane, how.margin, eye, planes);
+      nearestReceiver = imageOf(plane, receiversWithin(scene, subject.instanceBounds, eye, planes)).nearest;
+    }
+    near = std::max({near, std::min(std::max(nearestReceiver - room, 0.0), far * how.nearRatio), far * 1e-12});
   }
   result.near = near;
   result.far = std::max(far, near + room);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gnomon/graph/types.h"
+#include "gnomon/scene/camera.h"
 #include "gnomon/scene/light.h"
 #include "gnomon/scene/scene.h"
 
@@ -19,7 +20,18 @@ struct MapPlane {
   glm::dvec2 centre{0.0, 0.0};      ///< directional: in the light's XY plane, metres
 };
 
-MapPlane mapPlane(const FrameInputs& frame);
+/// What a map is placed and fitted by. References hold for the call.
+struct MapSubject {
+  const Scene& scene;
+  const std::vector<Bounds>& instanceBounds;  ///< world boxes, as Scene::instances
+  const Light& light;
+  const Camera& camera;
+  double aspect = 1.0;  ///< of the picture: width over height
+};
+
+MapSubject mapSubject(const FrameInputs& frame);
+
+MapPlane mapPlane(const MapSubject& subject);
 
 /// What a map must hold for the receivers in view.
 struct MapFit {
@@ -32,11 +44,11 @@ struct MapFitting {
   glm::dvec2 margin{0.0, 0.0};  ///< the filter's radius, in [-1,1] units of the map
   bool cull = true;             ///< off: every caster is drawn
   bool fit = true;              ///< off: near and far hold the whole scene
-  double nearRatio = 1e-10;     ///< near is at least this part of far, unless a visible receiver is nearer
+  double nearRatio = 1e-10;     ///< near is at least this part of far, unless a receiver in reach (fit: in view) is nearer
 };
 
 /// Conservative: whatever casts onto a visible receiver is kept, whether or not the camera sees it. Near and far do not depend
 /// on `cull`, so that switching it leaves the same picture. Reuses the memory of `result`.
-void fitMap(const FrameInputs& frame, const MapPlane& plane, const MapFitting& how, MapFit& result);
+void fitMap(const MapSubject& subject, const MapPlane& plane, const MapFitting& how, MapFit& result);
 
 }  // namespace gnomon

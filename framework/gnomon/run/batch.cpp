@@ -26,7 +26,7 @@ std::map<std::string, JobRecord> earlierResults(const std::filesystem::path& dir
 
 std::string label(const ResolvedRun& run, const ResolvedJob& job) {
   const std::string parameters = job.technique.parametersText();
-  return fmt::format("{}: {}{}", run.config.name, job.technique.name(), parameters.empty() ? "" : " (" + parameters + ")");
+  return fmt::format("{}: {}{}", run.sceneName, job.technique.name(), parameters.empty() ? "" : " (" + parameters + ")");
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
           continue;
         }
         if (!lightRun) {
-          progress(mine, total, fmt::format("{}: reference {}", run.config.name, run.reference.name()), nullptr);
+          progress(mine, total, fmt::format("{}: reference {}", run.sceneName, run.reference.name()), nullptr);
           lightRun = std::make_unique<LightRun>(run, light, registry, how);
         }
         progress(mine, total, name, nullptr);

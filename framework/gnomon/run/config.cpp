@@ -131,7 +131,7 @@ void checkConfig(const RunConfig& config, const Location& where, Problems& probl
 std::shared_ptr<const FieldTable> configTable() {
   return ParameterTable<RunConfig>{
       text("name", &RunConfig::name, "what results call the config; without it, the file's name"),
-      custom("scene", &RunConfig::scene, sceneChoiceField(), "a built-in scene or a glTF file").mandatory(),
+      custom("scene", &RunConfig::scenes, sceneChoiceField(), "a built-in scene or a glTF file, or a list of them").mandatory(),
       object("plan", &RunConfig::plan, planOverridesTable(), "effects and rules to force on or off"),
       object("camera", &RunConfig::camera, cameraTable(), "without it, the scene's own"),
       list("lights", &RunConfig::lights, lightTable(), "without them, the scene's own"),
@@ -155,7 +155,9 @@ RunConfig readRunConfigText(const std::filesystem::path& path, std::string_view 
   if (!json) return config;
   readObject(*json, *configTable(), &config, top, problems);
 
-  if (!config.scene.file.empty()) config.scene.file = (path.parent_path() / config.scene.file).lexically_normal();
+  for (SceneChoice& scene : config.scenes) {
+    if (!scene.file.empty()) scene.file = (path.parent_path() / scene.file).lexically_normal();
+  }
   if (config.reference) config.reference->where = top.child("reference");
   if (config.baseline) config.baseline->where = top.child("baseline");
   for (std::size_t i = 0; i < config.techniques.size(); ++i) config.techniques[i].where = top.child("techniques").child(i);

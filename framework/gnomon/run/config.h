@@ -50,7 +50,7 @@ struct MeasureChoice {
 struct RunConfig {
   std::filesystem::path path;  ///< of the config itself, as given
   std::string name;            ///< without one, the file's name without extension
-  SceneChoice scene;
+  std::vector<SceneChoice> scenes;  ///< one or more: each is rendered with everything below
   PlanOverrides plan;
   std::optional<Camera> camera;              ///< nullopt: the scene's own
   std::optional<std::vector<Light>> lights;  ///< nullopt: the scene's own

@@ -45,8 +45,8 @@ TEST(RunConfig, ReadsTheExampleOfTheDocumentation) {
                 {"technique": "pcf", "parameters": {"kernel": "box"}, "sweep": {"taps": [3, 5, 9]}}],
  "measure": {"regimes": ["dynamic", "static"], "frames": 20, "blocks": 4}})");
   EXPECT_EQ(config.name, "sphere-grid");
-  EXPECT_EQ(config.scene.builtin, "sphere_grid");
-  EXPECT_EQ(config.scene.parameters.count, 7);
+  EXPECT_EQ(config.scenes[0].builtin, "sphere_grid");
+  EXPECT_EQ(config.scenes[0].parameters.count, 7);
   EXPECT_EQ(config.plan[Effect::penumbra], Toggle::off);
   EXPECT_EQ(config.camera->position, glm::dvec3(0.0, 9.0, 14.0));
   ASSERT_EQ(config.lights->size(), 1U);
@@ -79,7 +79,7 @@ TEST(RunConfig, WhatIsNotNamedIsLeftToTheScene) {
 
 TEST(RunConfig, MustNameSceneAndTechniques) {
   EXPECT_EQ(faults("{}"),
-            (std::vector<std::string>{"runs/c.json: the key \"scene\" is missing: a built-in scene or a glTF file",
+            (std::vector<std::string>{"runs/c.json: the key \"scene\" is missing: a built-in scene or a glTF file, or a list of them",
                                       "runs/c.json: the key \"techniques\" is missing: what is rendered, compared and "
                                       "measured"}));
   EXPECT_EQ(faults(withTechnique("")).size(), 1U);
@@ -132,16 +132,16 @@ TEST(SceneChoice, BuiltinScenesHaveTheirOwnKeys) {
 TEST(SceneChoice, FilesLieBesideTheConfig) {
   const RunConfig config = readWell(
       R"({"scene": {"file": "../scenes/x.glb", "cast": ["a", "b"], "receive": []}, "techniques": [{"technique": "a"}]})");
-  EXPECT_EQ(config.scene.file, "scenes/x.glb");
-  EXPECT_EQ(config.scene.cast->size(), 2U);
-  EXPECT_TRUE(config.scene.receive->empty());
-  EXPECT_TRUE(config.scene.builtin.empty());
+  EXPECT_EQ(config.scenes[0].file, "scenes/x.glb");
+  EXPECT_EQ(config.scenes[0].cast->size(), 2U);
+  EXPECT_TRUE(config.scenes[0].receive->empty());
+  EXPECT_TRUE(config.scenes[0].builtin.empty());
 }
 
 TEST(SceneChoice, FileWithoutNodesMeansAll) {
   const RunConfig config = readWell(R"({"scene": {"file": "/x.glb"}, "techniques": [{"technique": "a"}]})");
-  EXPECT_EQ(config.scene.file, "/x.glb");
-  EXPECT_FALSE(config.scene.cast);
+  EXPECT_EQ(config.scenes[0].file, "/x.glb");
+  EXPECT_FALSE(config.scenes[0].cast);
 }
 
 TEST(SceneChoice, IsOneOfTwo) {
@@ -196,7 +196,7 @@ TEST(RunConfig, WhatCannotBeOpenedIsOneFault) {
 }
 
 TEST(RunConfigSchema, KnowsEveryBuiltinSceneWithItsKeys) {
-  const Json scene = runConfigSchema()["properties"]["scene"];
+  const Json scene = runConfigSchema()["properties"]["scene"]["else"];
   ASSERT_EQ(scene["then"]["allOf"].size(), builtinScenes().size());
   EXPECT_TRUE(scene["then"]["allOf"][0]["then"]["properties"].contains("builtin"));
   EXPECT_EQ(scene["then"]["allOf"][0]["then"]["additionalProperties"], false);

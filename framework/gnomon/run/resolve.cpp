@@ -11,8 +11,11 @@ namespace gnomon {
 
 namespace {
 
+/// Of the reference, in two halves, unless the config says otherwise.
+constexpr int kReferenceSamples = 1024;
+
 /// Sets a flag of exactly the named nodes' instances; a name that no node bears is a fault.
-void flagNamed(Scene& scene, const std::vector<std::string>& names, bool Instance::*flag, const std::string& key, const std::string& file) {
+void flagNamed(Scene& scene, const std::vector<std::string>& names, bool Instance::*flag, const Location& where) {
   std::vector<std::string> known;
   for (Instance& instance : scene.instances) {
     instance.*flag = std::find(names.begin(), names.end(), instance.name) != names.end();
@@ -21,17 +24,19 @@ void flagNamed(Scene& scene, const std::vector<std::string>& names, bool Instanc
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string nearest = nearestName(name, known);
-    throw InputError({{file, "/scene/" + key, fmt::format("no node of the scene is named '{}'{}", name,
+    throw InputError({{where.file, where.pointer, fmt::format("no node of the scene is named '{}'{}", name,
                                                           nearest.empty() ? "" : "; did you mean '" + nearest + "'?")}});
   }
 }
 
-/// Opens a technique and checks its parameters; null entry when that failed.
-ResolvedTechnique resolveTechnique(Registry& registry, const std::string& name, const Json& parameters, const Location& where, Problems& problems) {
+/// Opens a technique and checks its parameters, which stand at `parametersAt` in the entry at `where`; null entry when that
+/// failed.
+ResolvedTechnique resolveTechnique(Registry& registry, const std::string& name, const Json& parameters, const Location& parametersAt,
+                                   const Location& where, Problems& problems) {
   ResolvedTechnique resolved;
   try {
     resolved.technique = registry.open(name);
-    resolved.parameters = registry.parameters(resolved.technique, parameters, where.child("parameters"), problems);
+    resolved.parameters = registry.parameters(resolved.technique, parameters, parametersAt, problems);
   } catch (const InputError& error) {
     for (const Problem& p : error.problems()) {
       problems.add(p.file.empty() ? where.file : p.file, p.file.empty() ? where.pointer + "/technique" : p.pointer, p.message);
@@ -59,78 +64,82 @@ std::string ResolvedTechnique::parametersText() const {
   return text;
 }
 
-Scene loadScene(const SceneChoice& choice) {
+Scene loadScene(const SceneChoice& choice, const Location& where) {
   Scene scene;
   if (!choice.builtin.empty()) {
     const BuiltinScene* builtin = findBuiltinScene(choice.builtin);
-    if (builtin == nullptr) throw InputError({{"", "/scene/builtin", "no built-in scene is named '" + choice.builtin + "'"}});
+    if (builtin == nullptr) throw InputError({{where.file, where.pointer + "/builtin", "no built-in scene is named '" + choice.builtin + "'"}});
     scene = builtin->make(choice.parameters);
   } else {
     scene = loadGltf(choice.file);
   }
-  if (choice.cast) flagNamed(scene, *choice.cast, &Instance::casts, "cast", choice.file.string());
-  if (choice.receive) flagNamed(scene, *choice.receive, &Instance::receives, "receive", choice.file.string());
+  if (choice.cast) flagNamed(scene, *choice.cast, &Instance::casts, where.child("cast"));
+  if (choice.receive) flagNamed(scene, *choice.receive, &Instance::receives, where.child("receive"));
   return scene;
 }
 
-ResolvedRun resolveRun(const std::filesystem::path& path, Registry& registry, Problems& problems) {
-  ResolvedRun run;
-  const std::string file = path.string();
-  run.config = readRunConfig(path, problems);
-  if (run.config.scene.builtin.empty() && run.config.scene.file.empty()) return run;  // said already
+namespace {
 
+ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& registry, Problems& problems) {
+  ResolvedRun run;
+  run.config = config;
+  const std::string file = config.path.string();
+  const SceneChoice& choice = config.scenes[index];
+  if (choice.builtin.empty() && choice.file.empty()) return run;  // said already
+  const std::string scenePointer = config.scenes.size() == 1 ? "/scene" : fmt::format("/scene/{}", index);
   try {
-    run.scene = loadScene(run.config.scene);
+    run.scene = loadScene(choice, {file, scenePointer});
   } catch (const InputError& error) {
     for (const Problem& p : error.problems()) problems.add(p.file.empty() ? file : p.file, p.pointer, p.message);
+    return run;
+  } catch (const Error& error) {
+    problems.add(file, scenePointer, error.what());
+    return run;
   }
-  run.sceneName = run.config.scene.builtin.empty() ? run.config.scene.file.filename().string() : run.config.scene.builtin;
-  run.lights = run.config.lights.value_or(run.scene.lights);
-  if (run.lights.empty() && problems.empty()) {
+  run.sceneName = choice.builtin.empty() ? choice.file.filename().string() : choice.builtin;
+  run.lights = config.lights.value_or(run.scene.lights);
+  if (run.lights.empty()) {
     problems.add(file, "/lights", fmt::format("the config names no light and {} has none; add \"lights\": [{{\"type\": \"spot\", ...}}]", run.sceneName));
   }
-  run.camera = run.config.camera.value_or(run.scene.camera.value_or(Camera{}));
+  run.camera = config.camera.value_or(run.scene.camera.value_or(Camera{}));
 
   const auto withRole = [&](TechniqueRole role, const std::optional<TechniqueChoice>& chosen, const std::string& key) {
-    const Location where{file, "/" + key};
-    if (chosen) return resolveTechnique(registry, chosen->technique, objectOf(chosen->parameters), chosen->where, problems);
-    const RegisteredTechnique* registered = registry.withRole(role);
-    if (registered == nullptr) {
-      problems.add(file, where.pointer, fmt::format("no registered technique has the role of {}; name one", key));
-      return ResolvedTechnique{};
+    if (chosen) return resolveTechnique(registry, chosen->technique, objectOf(chosen->parameters), chosen->where.child("parameters"), chosen->where, problems);
+    if (const RegisteredTechnique* registered = registry.withRole(role)) {
+      return resolveTechnique(registry, registered->declaration.name, Json::object(), {file, "/" + key + "/parameters"}, {file, "/" + key}, problems);
     }
-    return resolveTechnique(registry, registered->declaration.name, Json::object(), where, problems);
+    problems.add(file, "/" + key, fmt::format("no registered technique has the role of {}; name one", key));
+    return ResolvedTechnique{};
   };
-  run.reference = withRole(TechniqueRole::reference, run.config.reference, "reference");
-  if (run.reference.technique.entry != nullptr && !run.config.reference) {
-    if (int* samples = reservedParameter(run.reference, "samples")) *samples = 1024;  // 2 x 512, unless the config says otherwise
-  }
+  run.reference = withRole(TechniqueRole::reference, config.reference, "reference");
   if (run.reference.technique.entry != nullptr) {
-    if (int* samples = reservedParameter(run.reference, "samples"); samples != nullptr && *samples < 2) {
-      problems.add(file, "/reference/parameters/samples", "the reference is rendered as two halves and needs at least 2 samples");
+    int* samples = reservedParameter(run.reference, "samples");
+    const bool chosen = config.reference && config.reference->parameters && config.reference->parameters->contains("samples");
+    if (samples != nullptr && !chosen) *samples = kReferenceSamples;
+    if (samples != nullptr && *samples < 2) {
+      problems.add(file, "/reference/parameters/samples", "found 1; allowed: 2 or more, since the reference is rendered as two halves");
     }
   }
-  run.baseline = withRole(TechniqueRole::floor, run.config.baseline, "baseline");
+  run.baseline = withRole(TechniqueRole::floor, config.baseline, "baseline");
 
-  for (const JobRequest& request : expandJobs(run.config, run.lights.size())) {
+  for (const JobRequest& request : expandJobs(config, run.lights.size())) {
     Problems found;
-    ResolvedTechnique technique;
-    try {
-      technique.technique = registry.open(request.technique);
-      technique.parameters = registry.parameters(technique.technique, *request.parameters, request.where, found);
-      problems.append(atTheirPlaces(found, request));
-    } catch (const InputError& error) {
-      if (request.light > 0) continue;
-      const TechniqueChoice& choice = run.config.techniques[request.entry];
-      for (const Problem& p : error.problems()) {
-        problems.add(p.file.empty() ? file : p.file, p.file.empty() ? choice.where.pointer + "/technique" : p.pointer, p.message);
-      }
-    } catch (const Error& error) {
-      problems.add(file, run.config.techniques[request.entry].where.pointer + "/technique", error.what());
-    }
+    ResolvedTechnique technique = resolveTechnique(registry, request.technique, *request.parameters, request.where, config.techniques[request.entry].where, found);
+    problems.append(atTheirPlaces(found, request));
     run.jobs.push_back({request.light, std::move(technique)});
   }
   return run;
+}
+
+}  // namespace
+
+std::vector<ResolvedRun> resolveRuns(const std::filesystem::path& path, Registry& registry, Problems& problems) {
+  Problems found;
+  const RunConfig config = readRunConfig(path, found);
+  std::vector<ResolvedRun> runs;
+  for (std::size_t i = 0; i < config.scenes.size(); ++i) runs.push_back(resolveScene(config, i, registry, found));
+  problems.append(found.unique());  // a wrong parameter is found for every scene, light and value of a sweep
+  return runs;
 }
 
 int* reservedParameter(const ResolvedTechnique& technique, const std::string& name) {

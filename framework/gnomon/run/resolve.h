@@ -40,11 +40,12 @@ struct ResolvedRun {
   std::vector<ResolvedJob> jobs;
 };
 
-/// The scene that the config chose, with its flags of who casts and receives. Throws InputError.
-Scene loadScene(const SceneChoice& choice);
+/// The scene that the config chose at `where`, with its flags of who casts and receives. Throws InputError.
+Scene loadScene(const SceneChoice& choice, const Location& where);
 
-/// Reads and resolves. Every fault goes to `problems` (then the result is only part of it).
-ResolvedRun resolveRun(const std::filesystem::path& path, Registry& registry, Problems& problems);
+/// Reads and resolves: one run for each of the config's scenes. Every fault goes to `problems`, each once; then the result is
+/// only part of it.
+std::vector<ResolvedRun> resolveRuns(const std::filesystem::path& path, Registry& registry, Problems& problems);
 
 /// The technique's reserved integer parameter `name` ("seed", "samples"), or null when its table has none.
 int* reservedParameter(const ResolvedTechnique& technique, const std::string& name);

@@ -89,10 +89,26 @@ Json sceneSchema() {
 std::shared_ptr<const CustomField> sceneChoiceField() {
   auto field = std::make_shared<CustomField>();
   field->read = [](const Json& json, void* value, const Location& where, Problems& problems) {
-    readScene(json, *static_cast<SceneChoice*>(value), where, problems);
+    auto& choices = *static_cast<std::vector<SceneChoice>*>(value);
+    choices.clear();
+    if (!json.is_array()) return readScene(json, choices.emplace_back(), where, problems);
+    if (json.empty()) reportWrong(json, "at least one scene", where, problems);
+    for (std::size_t i = 0; i < json.size(); ++i) readScene(json[i], choices.emplace_back(), where.child(i), problems);
   };
-  field->write = [](const void* value) { return writeScene(*static_cast<const SceneChoice*>(value)); };
-  field->schema = sceneSchema;
+  field->write = [](const void* value) {
+    const auto& choices = *static_cast<const std::vector<SceneChoice>*>(value);
+    if (choices.size() == 1) return writeScene(choices[0]);
+    Json json = Json::array();
+    for (const SceneChoice& choice : choices) json.push_back(writeScene(choice));
+    return json;
+  };
+  field->schema = [] {
+    Json schema;
+    schema["if"] = {{"type", "array"}};
+    schema["then"] = {{"items", sceneSchema()}, {"minItems", 1}};
+    schema["else"] = sceneSchema();
+    return schema;
+  };
   return field;
 }
 

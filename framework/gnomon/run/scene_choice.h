@@ -7,7 +7,8 @@
 
 namespace gnomon {
 
-/// Reads a SceneChoice: {"builtin": NAME, keys of that scene} or {"file": PATH, "cast": [...], "receive": [...]}.
+/// Reads std::vector<SceneChoice>: {"builtin": NAME, keys of that scene} or {"file": PATH, "cast": [...], "receive": [...]},
+/// or a list of these.
 std::shared_ptr<const CustomField> sceneChoiceField();
 
 }  // namespace gnomon

@@ -56,6 +56,7 @@ std::vector<std::string> row(const JobRecord& r, const std::vector<JobRecord>& r
                       ? fmt::format("{:.1f}{}", *time->ratio,
                                     time->ratioCi95 ? fmt::format(" [{:.1f}, {:.1f}]", time->ratioCi95->low, time->ratioCi95->high) : "")
                       : "-");
+  cells.push_back(r.job);
   return cells;
 }
 
@@ -75,7 +76,7 @@ std::string alignedTable(const std::vector<std::vector<std::string>>& rows) {
     for (std::size_t c = 0; c < rows[r].size(); ++c) {
       const std::string& cell = rows[r][c];
       const std::size_t room = widths[c] > codePoints(cell) ? widths[c] - codePoints(cell) : 0;
-      const bool right = c >= 2 && (r == 0 || isNumeric(cell) || cell == "-");
+      const bool right = c >= 2 && c + 1 < rows[0].size() && (r == 0 || isNumeric(cell) || cell == "-");
       line += (c == 0 ? "" : "  ") + (right ? std::string(room, ' ') + cell : cell + std::string(room, ' '));
     }
     line.erase(line.find_last_not_of(' ') + 1);
@@ -105,7 +106,7 @@ std::string summaryTable(const std::vector<JobRecord>& records) {
       rows.push_back(row(r, records));
     }
     const std::string timer = first->time && first->time->timer ? clockName(*first->time->timer) + " " : "";
-    rows.insert(rows.begin(), {"technique", "parameters", "RMSE", "band RMSE", "bias", timer + "ms", "x baseline"});
+    rows.insert(rows.begin(), {"technique", "parameters", "RMSE", "band RMSE", "bias", timer + "ms", "x baseline", "job"});
     text += fmt::format("{}{}, light {}\n{}", text.empty() ? "" : "\n", scene, light, alignedTable(rows));
     for (const JobRecord& r : records) {
       if (r.scene == scene && r.light == light && r.error && r.error->noiseFloor) {

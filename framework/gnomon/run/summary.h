@@ -9,7 +9,7 @@
 namespace gnomon {
 
 /// One table a scene and light: technique, parameters, RMSE with its error, band RMSE, bias, milliseconds, times the
-/// baseline's. Plain text, columns aligned by code points.
+/// baseline's, and the job's key, by which its pictures are named. Plain text, columns aligned by code points.
 std::string summaryTable(const std::vector<JobRecord>& records);
 
 /// Rows of cells, the first row the headings, as aligned text; numbers to the right.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
@@ -90,6 +91,27 @@ double nearestCaster(const Scene& scene, const Light& light, const LightFrame& f
   return nearest;
 }
 
+/// Rounding of a plane's distance is some 1e-16 of the coordinates' size: 1e-12 keeps what touches the plane.
+double clipTolerance(const Bounds& box, const glm::dvec4& plane) {
+  return 1e-12 * std::max({glm::length(box.min), glm::length(box.max), std::abs(plane.w)});
+}
+
+enum class BoxSide { inside, cut, outside };
+
+/// Most boxes are wholly on one side of every plane and need not be clipped.
+BoxSide sideOf(const Bounds& box, std::span<const glm::dvec4> planes) {
+  BoxSide side = BoxSide::inside;
+  for (const glm::dvec4& plane : planes) {
+    const glm::dvec3 n(plane);
+    const double middle = glm::dot(n, box.centre()) + plane.w;
+    const double reach = glm::dot(glm::abs(n), box.max - box.min) / 2.0;
+    const double tolerance = clipTolerance(box, plane);
+    if (middle + reach < -tolerance) return BoxSide::outside;
+    if (middle - reach < tolerance) side = BoxSide::cut;
+  }
+  return side;
+}
+
 double penumbraWidth(const Light& light, double nearestCaster, double farthestReceiver) {
   const double gap = farthestReceiver - nearestCaster;
   if (!(gap > 0.0)) return 0.0;
@@ -103,27 +125,38 @@ double penumbraWidth(const Light& light, double nearestCaster, double farthestRe
 
 std::vector<VisibleReceiver> visibleReceivers(const Scene& scene, const std::vector<Bounds>& instanceBounds,
                                               const Camera& camera, double aspect) {
-  const Planes planes = frustumPlanes(camera, aspect);
-  std::vector<VisibleReceiver> visible;
+  return receiversWithin(scene, instanceBounds, camera.position, frustumPlanes(camera, aspect));
+}
+
+std::vector<VisibleReceiver> receiversWithin(const Scene& scene, const std::vector<Bounds>& instanceBounds,
+                                             const glm::dvec3& origin, std::span<const glm::dvec4> planes) {
+  std::vector<VisibleReceiver> within;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (!scene.instances[i].receives || instanceBounds[i].empty()) continue;
     Bounds relative;
-    relative.add(instanceBounds[i].min - camera.position);
-    relative.add(instanceBounds[i].max - camera.position);
-    // Rounding of a plane's distance is some 1e-16 of the coordinates' size: 1e-12 keeps what touches the frustum.
-    const double tolerance = 1e-12 * std::max(glm::length(relative.min), glm::length(relative.max));
-    Polyhedron part = boxPolyhedron(relative);
-    for (const glm::dvec4& plane : planes) part = clipped(part, plane, tolerance);
+    relative.add(instanceBounds[i].min - origin);
+    relative.add(instanceBounds[i].max - origin);
     VisibleReceiver receiver{i, {}};
-    for (const auto& face : part)
-      for (const glm::dvec3& p : face) {
-        const glm::dvec3 corner = p + camera.position;
-        if (std::find(receiver.points.begin(), receiver.points.end(), corner) == receiver.points.end())
-          receiver.points.push_back(corner);
+    const auto add = [&](const glm::dvec3& p) {
+      const glm::dvec3 corner = p + origin;
+      if (std::find(receiver.points.begin(), receiver.points.end(), corner) == receiver.points.end())
+        receiver.points.push_back(corner);
+    };
+    switch (sideOf(relative, planes)) {
+      case BoxSide::outside:
+        continue;
+      case BoxSide::inside:
+        for (int c = 0; c < 8; ++c) add(relative.corner(c));
+        break;
+      case BoxSide::cut: {
+        Polyhedron part = boxPolyhedron(relative);
+        for (const glm::dvec4& plane : planes) part = clipped(part, plane, clipTolerance(relative, plane));
+        for (const auto& face : part) std::for_each(face.begin(), face.end(), add);
       }
-    if (!receiver.points.empty()) visible.push_back(std::move(receiver));
+    }
+    if (!receiver.points.empty()) within.push_back(std::move(receiver));
   }
-  return visible;
+  return within;
 }
 
 SceneSurvey survey(const Scene& scene, const Light& light, const Camera& camera, glm::ivec2 outputSize) {

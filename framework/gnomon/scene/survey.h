@@ -4,13 +4,15 @@
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
 #include <vector>
 
 #include "gnomon/scene/scene.h"
 
 namespace gnomon {
 
-/// The part of one receiver that the camera may see: its world box clipped to the view frustum.
+/// The part of one receiver that matters, such as what the camera may see: its world box clipped to half-spaces.
 struct VisibleReceiver {
   std::size_t instance = 0;
   std::vector<glm::dvec3> points;  ///< corners of the convex clipped box, world coordinates
@@ -19,6 +21,10 @@ struct VisibleReceiver {
 /// Receivers inside the view frustum, conservatively (none is missed). `aspect` is width over height.
 std::vector<VisibleReceiver> visibleReceivers(const Scene& scene, const std::vector<Bounds>& instanceBounds,
                                               const Camera& camera, double aspect);
+
+/// Receivers inside all half-spaces n.x + d >= 0 (unit normals, x relative to `origin`), conservatively.
+std::vector<VisibleReceiver> receiversWithin(const Scene& scene, const std::vector<Bounds>& instanceBounds,
+                                             const glm::dvec3& origin, std::span<const glm::dvec4> planes);
 
 struct SceneSurvey {
   Bounds bounds;                       ///< of everything

@@ -1,0 +1,3 @@
+float halved(float x) {
+  return 0.5 * x;
+}

@@ -1,0 +1,142 @@
+// One technique that breaks the contract in the way its parameter says, and keeps it when that is `none`.
+#include <gnomon/plugin.h>
+
+#include "gnomon/base/error.h"
+
+namespace gnomon {
+namespace {
+
+enum class Fault : int {
+  none,
+  refuse,
+  throwInCreate,
+  throwInSupport,
+  throwInSetup,
+  throwNumberInSetup,
+  throwInUpdate,
+  throwInPass,
+  throwNumberInPass,
+  noVisibility,
+  unknownHandle,
+  neverWritten,
+  wrongSize,
+  wrongFormat,
+  syntaxError,
+  missingInclude,
+  includeOutside,
+  missingShader,
+  unknownSampler,
+  unknownBlock,
+  glError,
+  undeclaredRead,
+  undeclaredWrite,
+  wrongAmount,
+  twoWriters,
+  readBeforeWrite
+};
+
+const std::vector<std::string> kFaults{"none",
+                                       "refuse",
+                                       "throw_in_create",
+                                       "throw_in_support",
+                                       "throw_in_setup",
+                                       "throw_number_in_setup",
+                                       "throw_in_update",
+                                       "throw_in_pass",
+                                       "throw_number_in_pass",
+                                       "no_visibility",
+                                       "unknown_handle",
+                                       "never_written",
+                                       "wrong_size",
+                                       "wrong_format",
+                                       "syntax_error",
+                                       "missing_include",
+                                       "include_outside",
+                                       "missing_shader",
+                                       "unknown_sampler",
+                                       "unknown_block",
+                                       "gl_error",
+                                       "undeclared_read",
+                                       "undeclared_write",
+                                       "wrong_amount",
+                                       "two_writers",
+                                       "read_before_write"};
+
+struct Parameters {
+  Fault fault = Fault::none;
+};
+
+ParameterTable<Parameters> parameterTable() {
+  return {choice("fault", &Parameters::fault, kFaults, Binding::structure, "how the contract is broken")};
+}
+
+class Mischief final : public Technique {
+ public:
+  explicit Mischief(const Parameters& parameters) : fault_(parameters.fault) {
+    if (fault_ == Fault::throwInCreate) throw Error("thrown in create");
+  }
+
+  Support support(const SceneSurvey& /*survey*/, const Light& /*light*/, const Frame& /*frame*/) const override {
+    if (fault_ == Fault::throwInSupport) throw Error("thrown in support");
+    if (fault_ == Fault::refuse) return Support::refused("it was asked to refuse");
+    return {};
+  }
+
+  Outputs setup(GraphBuilder& graph, const Frame& frame, const EffectPlan& /*plan*/) override {
+    const TextureInfo info{frame.size, Format::r32f};
+    switch (fault_) {
+      case Fault::throwInSetup: throw std::runtime_error("thrown in setup");
+      case Fault::throwNumberInSetup: throw 42;
+      case Fault::noVisibility: return {};
+      case Fault::unknownHandle: return {.visibility = Texture{999}};
+      case Fault::neverWritten: return {.visibility = graph.texture("blank", info)};
+      case Fault::wrongSize: return {.visibility = graph.fullscreen("small", {.shader = "lit.frag", .size = glm::ivec2(3, 2)})};
+      case Fault::wrongFormat: return {.visibility = graph.fullscreen("bytes", {.shader = "lit.frag", .format = Format::r8})};
+      case Fault::syntaxError: return {.visibility = graph.fullscreen("broken", {.shader = "syntax_error.frag"})};
+      case Fault::missingInclude: return {.visibility = graph.fullscreen("broken", {.shader = "missing_include.frag"})};
+      case Fault::includeOutside: return {.visibility = graph.fullscreen("broken", {.shader = "include_outside.frag"})};
+      case Fault::missingShader: return {.visibility = graph.fullscreen("broken", {.shader = "nowhere.frag"})};
+      case Fault::unknownSampler: return {.visibility = graph.fullscreen("broken", {.shader = "unknown_sampler.frag"})};
+      case Fault::unknownBlock: return {.visibility = graph.fullscreen("broken", {.shader = "unknown_block.frag"})};
+      case Fault::twoWriters: {
+        const Texture shared = graph.texture("shared", info);
+        graph.cpu("first", {.writes = {shared}, .run = [](CpuContext&) {}});
+        graph.cpu("second", {.writes = {shared}, .run = [](CpuContext&) {}});
+        return {.visibility = shared};
+      }
+      case Fault::readBeforeWrite:
+        return {.visibility = graph.fullscreen("early", {.shader = "copy.frag", .reads = {{"source", graph.texture("later", info)}}})};
+      default: return {.visibility = cpuPass(graph, frame)};
+    }
+  }
+
+  void update(const FrameInputs& /*inputs*/, UniformWriter& /*writer*/) override {
+    if (fault_ == Fault::throwInUpdate) throw Error("thrown in update");
+  }
+
+ private:
+  /// V = 1 from the CPU, or a fault on the way there.
+  Texture cpuPass(GraphBuilder& graph, const Frame& frame) const {
+    const Texture target = graph.texture("visibility", {frame.size, Format::r32f});
+    const Texture other = graph.texture("other", {frame.size, Format::r32f});
+    const GBuffer g = frame.gbuffer;
+    graph.cpu("work", {.reads = {g.position}, .writes = {target}, .run = [=, fault = fault_](CpuContext& context) {
+                         std::vector<float> lit(static_cast<std::size_t>(frame.size.x * frame.size.y), 1.0f);
+                         if (fault == Fault::throwInPass) throw Error("thrown in the pass");
+                         if (fault == Fault::throwNumberInPass) throw 42;
+                         if (fault == Fault::glError) context.readIntegers(g.position);  // floats cannot be read as integers
+                         if (fault == Fault::undeclaredRead) context.read(g.normal);
+                         if (fault == Fault::undeclaredWrite) context.write(other, lit);
+                         if (fault == Fault::wrongAmount) lit.pop_back();
+                         context.write(target, lit);
+                       }});
+    return target;
+  }
+
+  Fault fault_;
+};
+
+}  // namespace
+}  // namespace gnomon
+
+GNOMON_PLUGIN(gnomon::entry<gnomon::Mischief>("mischief", gnomon::parameterTable(), {}))

@@ -1,0 +1,4 @@
+layout(std140) uniform NobodyGaveThis { float level; };
+out float visibility;
+
+void main() { visibility = level; }

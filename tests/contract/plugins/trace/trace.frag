@@ -1,0 +1,3 @@
+out float visibility;
+
+void main() { visibility = 1.0; }
