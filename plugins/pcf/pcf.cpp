@@ -2,7 +2,8 @@
 //
 // Compares the receiver's depth with each texel under an N x N box, then averages the comparisons: V = mean of [d <= z_i].
 // The penumbra has one width everywhere, so contact shadows are too soft and distant ones too hard; the cost grows with N^2
-// texel reads. A wide kernel reaches texels where the receiver's own plane is nearer: taps follow that plane.
+// texel reads. A wide kernel reaches texels where the receiver's own surface is nearer to the light: taps follow its plane, and
+// a bias that grows with the kernel covers how far the surface may bend away from that plane (45 degrees over its radius).
 #include <gnomon/plugin.h>
 
 namespace gnomon {
@@ -14,7 +15,7 @@ struct Parameters {
   Kernel kernel = Kernel::box;
   int taps = 5;
   float spread = 1.0f;
-  DepthMapParameters map{.bias = {.constant = 2.0f, .slope = 0.0f, .receiverPlane = true}};
+  DepthMapParameters map{.bias = {.constant = 2.0f, .slope = 0.0f, .curvature = 1.0f, .receiverPlane = true}};
 };
 
 ParameterTable<Parameters> parameterTable() {

@@ -53,7 +53,7 @@ double largestBias(const Facts& facts, double depth, double cosTheta, double toC
   const double position = kPositionRounding * (toCamera + facts.cameraDistance);
   const double rounding = position + 2.0 * steepest * (position / std::max(std::min(texel.x, texel.y), 1e-300) +
                                                        kPositionRounding * std::max(facts.mapSize.x, facts.mapSize.y));
-  return facts.biasConstant * depthQuantum(facts, depth) + std::min(rounding + facts.biasSlope * steepest, facts.biasLimit * widest) +
+  return facts.biasConstant * depthQuantum(facts, depth) + std::min(rounding + facts.biasSlope * steepest + facts.biasCurvature * facts.filterRadiusTexels * widest, facts.biasLimit * widest) +
          facts.biasNormal * widest;
 }
 

@@ -111,6 +111,7 @@ struct Facts {
   double biasConstant = 0.0;     ///< quanta
   double biasSlope = 0.0;        ///< depth change across a texel
   double biasNormal = 0.0;       ///< texels
+  double biasCurvature = 0.0;    ///< texels per texel of filter radius
   double biasLimit = 0.0;        ///< no slope correction exceeds this many texel footprints
   bool receiverPlane = false;    ///< taps are compared with the receiver's plane
   double filterRadiusTexels = 0.0;  ///< farthest tap from the receiver, Chebyshev

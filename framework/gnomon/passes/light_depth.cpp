@@ -25,6 +25,7 @@ struct LightMapBlock {
   glm::vec4 depth;
   glm::vec4 texel;
   glm::vec4 precision;
+  glm::vec4 filter;
 };
 
 /// z = a / d + b (perspective) or a d + b: 1 at near, 0 at far.
@@ -50,7 +51,7 @@ FormatPrecision precisionOf(MapFormat format) {
 }
 
 LightMapBlock lightMapBlock(const FrameInputs& frame, const MapPlane& plane, const MapFit& fit, glm::ivec2 mapSize,
-                            const FormatPrecision& precision) {
+                            const FormatPrecision& precision, double filterRadiusTexels) {
   const LightFrame& axes = plane.axes;
   const glm::dvec2 k = depthCoefficients(plane.perspective, fit.near, fit.far);
   const glm::dvec2 s = 1.0 / plane.halfExtent;
@@ -81,7 +82,8 @@ LightMapBlock lightMapBlock(const FrameInputs& frame, const MapPlane& plane, con
           glm::vec4(glm::dvec4(k, fit.near, fit.far)),
           glm::vec4(glm::dvec4(1.0 / glm::dvec2(mapSize), glm::dvec2(mapSize))),
           glm::vec4(plane.perspective ? 1.0f : 0.0f, static_cast<float>(precision.step), precision.relative ? 1.0f : 0.0f,
-                    static_cast<float>(glm::length(offset)))};
+                    static_cast<float>(glm::length(offset))),
+          glm::vec4(static_cast<float>(filterRadiusTexels), 0.0f, 0.0f, 0.0f)};
 }
 
 }  // namespace
@@ -94,6 +96,8 @@ ParameterTable<DepthMapParameters> depthMapTable() {
            "times the receiver's depth change across a texel: guards against texels on sloped receivers"),
       real("normal", &DepthBias::normal, {.min = 0.0, .max = 64.0, .unit = "texels"}, Binding::uniform,
            "moves the receiver along its normal by that many texel footprints times the sine of the angle to the light"),
+      real("curvature", &DepthBias::curvature, {.min = 0.0, .max = 64.0, .unit = "texels per texel"}, Binding::uniform,
+           "times the filter's radius, in texel footprints: guards wide filters on surfaces that curve towards the light"),
       boolean("receiver_plane", &DepthBias::receiverPlane, Binding::specialise,
               "compares each texel with the depth of the receiver's own plane there"),
       real("limit", &DepthBias::limit, {.min = 0.0, .max = 1e6, .unit = "texels"}, Binding::uniform,
@@ -131,6 +135,7 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& /*frame*/, const DepthMa
   facts.biasConstant = parameters.bias.constant;
   facts.biasSlope = parameters.bias.slope;
   facts.biasNormal = parameters.bias.normal;
+  facts.biasCurvature = parameters.bias.curvature;
   facts.biasLimit = parameters.bias.limit;
   facts.receiverPlane = parameters.bias.receiverPlane;
   facts.filterRadiusTexels = filterRadiusTexels;
@@ -150,7 +155,7 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& /*frame*/, const DepthMa
                       const MapSubject subject = mapSubject(frame);
                       const MapPlane plane = mapPlane(subject);
                       fitMap(subject, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = precision.nearRatio}, *scratch);
-                      context.writeBlock(lightMap, lightMapBlock(frame, plane, *scratch, mapSize, precision));
+                      context.writeBlock(lightMap, lightMapBlock(frame, plane, *scratch, mapSize, precision, filterRadiusTexels));
                       context.draw(casters, scratch->casters, plane.axes.origin);
                       Facts& now = context.facts();
                       now.perspective = plane.perspective;

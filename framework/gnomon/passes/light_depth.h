@@ -13,6 +13,7 @@ struct DepthBias {
   float constant = 2.0f;
   float slope = 1.0f;
   float normal = 0.0f;
+  float curvature = 0.0f;
   bool receiverPlane = false;
   float limit = 4096.0f;
 };
@@ -23,7 +24,7 @@ struct DepthMapParameters {
   DepthBias bias;
 };
 
-/// map_size, map_format, bias.constant, bias.slope, bias.normal, bias.receiver_plane, bias.limit.
+/// map_size, map_format, bias.constant, bias.slope, bias.normal, bias.curvature, bias.receiver_plane, bias.limit.
 ParameterTable<DepthMapParameters> depthMapTable();
 
 /// Refuses lights that one planar map cannot cover and maps larger than the driver allows.

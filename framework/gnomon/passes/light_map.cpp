@@ -102,25 +102,32 @@ MapPlane mapPlane(const MapSubject& subject) {
     plane.halfExtent = glm::dvec2(std::tan(glm::radians(subject.light.coneHalfAngleDegrees)));
     return plane;
   }
-  // A directional map spans all receivers, not only those in view: it must not swim when the camera moves.
+  // A directional map spans all receivers, not only those in view: it must not swim when the camera moves. Its origin is in
+  // their middle: the light's position means nothing, and may be so far that float has no digits left for the scene.
+  Bounds receivers;
+  const auto isReceiver = [&](std::size_t i) {
+    return subject.scene.instances[i].receives && !subject.instanceBounds[i].empty();
+  };
+  for (std::size_t i = 0; i < subject.scene.instances.size(); ++i) {
+    if (isReceiver(i)) receivers.add(subject.instanceBounds[i]);
+  }
+  if (receivers.empty()) return plane;
+  plane.axes.origin = receivers.centre();
   glm::dvec2 low(std::numeric_limits<double>::infinity());
   glm::dvec2 high(-std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < subject.scene.instances.size(); ++i) {
-    const Bounds& box = subject.instanceBounds[i];
-    if (!subject.scene.instances[i].receives || box.empty()) continue;
+    if (!isReceiver(i)) continue;
     for (int c = 0; c < 8; ++c) {
-      const glm::dvec3 p = box.corner(c) - plane.axes.origin;
+      const glm::dvec3 p = subject.instanceBounds[i].corner(c) - plane.axes.origin;
       const glm::dvec2 xy(glm::dot(plane.axes.x, p), glm::dot(plane.axes.y, p));
       low = glm::min(low, xy);
       high = glm::max(high, xy);
     }
   }
-  if (low.x <= high.x) {
-    plane.centre = (low + high) * 0.5;
-    const double widest = std::max({high.x - low.x, high.y - low.y, std::numeric_limits<double>::min()});
-    // A hundredth of the width around, so that receivers at the border lie inside; never zero across.
-    plane.halfExtent = glm::max((high - low) * 0.5, glm::dvec2(widest * 1e-3)) * 1.01;
-  }
+  plane.centre = (low + high) * 0.5;
+  const double widest = std::max({high.x - low.x, high.y - low.y, std::numeric_limits<double>::min()});
+  // A hundredth of the width around, so that receivers at the border lie inside; never zero across.
+  plane.halfExtent = glm::max((high - low) * 0.5, glm::dvec2(widest * 1e-3)) * 1.01;
   return plane;
 }
 

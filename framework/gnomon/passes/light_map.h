@@ -14,7 +14,7 @@ namespace gnomon {
 
 /// Coordinates in the map: xy in [-1,1] across it, and depth along the light's axis in metres.
 struct MapPlane {
-  LightFrame axes;
+  LightFrame axes;  ///< of the light; a directional light's origin is in the middle of the receivers
   bool perspective = true;
   glm::dvec2 halfExtent{1.0, 1.0};  ///< of the map: tangent of the half angle, or metres (directional)
   glm::dvec2 centre{0.0, 0.0};      ///< directional: in the light's XY plane, metres

@@ -12,12 +12,23 @@ namespace gnomon {
 namespace {
 
 std::size_t codePoints(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
 }
 
-bool isNumeric(const std::string& cell) { return !cell.empty() && (cell[0] == '-' || cell[0] == '+' || (cell[0] >= '0' && cell[0] <= '9')); }
+bool isNumeric(const std::string& cell) {
+  return !cell.empty() && (cell[0] == '-' || cell[0] == '+' || (cell[0] >= '0' && cell[0] <= '9'));
+}
 
-std::string number(const std::optional<double>& value, const char* format) { return value ? fmt::format(fmt::runtime(format), *value) : "-"; }
+std::string number(const std::optional<double>& value, const char* format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+/// 0.123, 1.23, 12.3, 123.
+std::string threeDigits(double value) {
+  const int decimals = value < 0.9995 ? 3 : value < 9.995 ? 2 : value < 99.95 ? 1 : 0;
+  return fmt::format("{:.{}f}", value, decimals);
+}
 
 /// "taps 5, map_size 512" of the values given; defaults included, since a record holds all.
 std::string parametersOf(const JobRecord& record, const std::vector<JobRecord>& records) {
@@ -31,7 +42,9 @@ std::string parametersOf(const JobRecord& record, const std::vector<JobRecord>& 
       const Json theirs = Json::parse(other.parametersJson, nullptr, false);
       return theirs.is_object() && theirs.contains(key) && theirs[key] != own;
     });
-    if (varies) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value.is_string() ? value.get<std::string>() : value.dump());
+    if (varies)
+      text +=
+          fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value.is_string() ? value.get<std::string>() : value.dump());
   }
   return text;
 }
@@ -43,7 +56,8 @@ std::vector<std::string> row(const JobRecord& r, const std::vector<JobRecord>& r
     return cells;
   }
   const ErrorFigures error = r.error.value_or(ErrorFigures{});
-  cells.push_back(error.rmse ? fmt::format("{:.4f}{}", *error.rmse, error.rmseSe ? fmt::format(" ± {:.4f}", *error.rmseSe) : "") : "-");
+  cells.push_back(error.rmse ? fmt::format("{:.4f}{}", *error.rmse, error.rmseSe ? fmt::format(" ± {:.4f}", *error.rmseSe) : "")
+                             : "-");
   cells.push_back(number(error.rmseBand, "{:.4f}"));
   cells.push_back(number(error.bias, "{:+.4f}"));
   const TimingFigures* time = nullptr;
@@ -51,11 +65,14 @@ std::vector<std::string> row(const JobRecord& r, const std::vector<JobRecord>& r
     const auto dynamic = r.time->regimes.find("dynamic");
     if (dynamic != r.time->regimes.end()) time = &dynamic->second;
   }
-  cells.push_back(time != nullptr ? number(time->medianMs, "{:.2f}") : "-");
-  cells.push_back(time != nullptr && time->ratio
-                      ? fmt::format("{:.1f}{}", *time->ratio,
-                                    time->ratioCi95 ? fmt::format(" [{:.1f}, {:.1f}]", time->ratioCi95->low, time->ratioCi95->high) : "")
-                      : "-");
+  cells.push_back(time != nullptr && time->medianMs ? threeDigits(*time->medianMs) : "-");
+  std::string ratio = "-";
+  if (time != nullptr && time->ratio) {
+    ratio = threeDigits(*time->ratio);
+    if (time->ratioCi95)
+      ratio += fmt::format(" [{}, {}]", threeDigits(time->ratioCi95->low), threeDigits(time->ratioCi95->high));
+  }
+  cells.push_back(ratio);
   cells.push_back(r.job);
   return cells;
 }

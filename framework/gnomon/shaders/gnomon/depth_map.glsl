@@ -66,7 +66,7 @@ Receiver receiverInMap() {
   const float positionError = kPositionRounding * (length(p) + mapPrecision.w);
   const float rounding = positionError * rate + (abs(r.slope.x) + abs(r.slope.y)) * (positionError / min(texels.x, texels.y) +
                          kPositionRounding * max(mapTexel.z, mapTexel.w));
-  r.bias = bias_constant * quantum + min(rounding + bias_slope * steepest, r.limit);
+  r.bias = bias_constant * quantum + min(rounding + bias_slope * steepest + bias_curvature * mapFilter.x * texel * rate, r.limit);
   return r;
 }
 

@@ -8,6 +8,7 @@ layout(std140) uniform LightMap {
   vec4 mapDepth;      // z = x / d + y (perspective) or x d + y; z, w: near and far, metres
   vec4 mapTexel;      // 1 / size, size
   vec4 mapPrecision;  // x: 1 perspective; y: quantum of the stored depth; z: 1 relative to it; w: light to camera, metres
+  vec4 mapFilter;     // x: radius of the filter, texels
 };
 
 bool mapIsPerspective() { return mapPrecision.x != 0.0; }
