@@ -193,6 +193,8 @@ std::vector<std::string> Session::passNames(Slot slot) const {
   return state_->at(slot).graph ? state_->at(slot).graph->passNames() : std::vector<std::string>{};
 }
 
+bool Session::hasCpuPasses(Slot slot) const { return state_->at(slot).graph && state_->at(slot).graph->hasCpuPasses(); }
+
 GraphReport Session::runShared(const GraphRun& options) { return state_->run(state_->shared, options); }
 
 GraphReport Session::runTechnique(Slot slot, const GraphRun& options) {

@@ -66,6 +66,7 @@ class Session {
   Facts facts(Slot slot) const;
   std::size_t memoryBytes(Slot slot) const;
   std::vector<std::string> passNames(Slot slot) const;
+  bool hasCpuPasses(Slot slot) const;
 
   /// The three parts of a frame, in order; each runs only what changed.
   GraphReport runShared(const GraphRun& options = {});

@@ -297,6 +297,11 @@ std::vector<std::string> Graph::passNames() const {
   return names;
 }
 
+bool Graph::hasCpuPasses() const {
+  return std::any_of(state_->passes.begin(), state_->passes.end(),
+                     [](const PassNode& node) { return node.kept && std::holds_alternative<CpuPass>(node.kind); });
+}
+
 std::vector<std::string> Graph::textureNames() const {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < state_->textures.size(); ++i) {

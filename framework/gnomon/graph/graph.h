@@ -74,6 +74,7 @@ class Graph {
   /// Of textures and buffers that this graph owns.
   std::size_t memoryBytes() const;
   std::vector<std::string> passNames() const;  ///< those kept
+  bool hasCpuPasses() const;                   ///< among those kept
   std::vector<std::string> textureNames() const;
 
  private:

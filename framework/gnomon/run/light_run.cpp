@@ -89,6 +89,7 @@ struct LightRun::State {
   RenderedReference reference;
   Image mask, positions, normals, classes;
   MachineRecord machine;
+  gl::QueryObject gpuTimer;  ///< only where the GPU's timer is believed
 
   State(const ResolvedRun& r, std::size_t l, Registry& g, LightRunOptions o)
       : run(r),
@@ -105,6 +106,7 @@ struct LightRun::State {
     const Image cosine = normalLightCosine(session, mask, positions, normals);
     const Image position3 = firstThree(positions);
     const Image normal3 = firstThree(normals);
+    if (options.clock == Clock::gpu) gpuTimer = gl::makeQuery(GL_TIME_ELAPSED);
     classes = classifyPixels({mask, reference.halves.a, reference.halves.b, position3, normal3, cosine});
   }
 
@@ -121,16 +123,27 @@ struct LightRun::State {
     glFinish();
     const double cpu = processCpuMs();
     const double wall = wallMs();
+    if (gpuTimer) glBeginQuery(GL_TIME_ELAPSED, gpuTimer.name());
     session.runTechnique(slot);
+    if (gpuTimer) glEndQuery(GL_TIME_ELAPSED);
     glFinish();
-    return {processCpuMs() - cpu, wallMs() - wall};
+    FrameTime time{processCpuMs() - cpu, wallMs() - wall};
+    if (gpuTimer) {
+      GLuint64 nanoseconds = 0;
+      glGetQueryObjectui64v(gpuTimer.name(), GL_QUERY_RESULT, &nanoseconds);
+      time.gpuMs = static_cast<double>(nanoseconds) * 1e-6;
+    }
+    return time;
   }
+
+  CpuPasses cpuPassesOf(Slot slot) const { return session.hasCpuPasses(slot) ? CpuPasses::some : CpuPasses::none; }
 
   TimeRecord time(Slot candidate, Slot baseline) {
     TimeRecord record;
-    record.timer = options.clock;
+    const Clock clock = clockForPair(*options.clock, cpuPassesOf(candidate), cpuPassesOf(baseline));
+    record.timer = clock;
     const int poses = posesOf(run.config.measure);
-    TimingPlan plan{.poses = poses, .blocks = run.config.measure.blocks, .clock = *options.clock};
+    const TimingPlan plan{.poses = poses, .blocks = run.config.measure.blocks, .clock = clock};
     for (const std::string& regime : run.config.measure.regimes) {
       const bool moving = regime == "dynamic";
       session.moveLight(nominal());

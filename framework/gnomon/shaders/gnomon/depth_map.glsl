@@ -73,11 +73,10 @@ Receiver receiverInMap() {
 // 1 if the texel under `uv` holds nothing nearer to the light than the receiver; outside the map nothing is known and all is lit.
 float isLit(sampler2D map, Receiver r, vec2 uv) {
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return 1.0;
+  // Fetched at its centre, a texel is the same one on every sampler, whatever digits that keeps of a coordinate.
+  const vec2 centre = floor(uv * mapTexel.zw) + 0.5;
   float depth = r.depth;
-  if (BIAS_RECEIVER_PLANE) {
-    // The texel holds the depth at its centre: compare with the receiver's plane there.
-    const vec2 fromReceiver = floor(uv * mapTexel.zw) + 0.5 - r.uv * mapTexel.zw;
-    depth += clamp(dot(r.slope, fromReceiver), -r.limit, r.limit);
-  }
-  return depth + r.bias >= textureLod(map, uv, 0.0).r ? 1.0 : 0.0;
+  // The texel holds the depth at its centre: compare with the receiver's plane there.
+  if (BIAS_RECEIVER_PLANE) depth += clamp(dot(r.slope, centre - r.uv * mapTexel.zw), -r.limit, r.limit);
+  return depth + r.bias >= textureLod(map, centre * mapTexel.xy, 0.0).r ? 1.0 : 0.0;
 }

@@ -30,7 +30,9 @@ class Counter final : public Technique {
     return {.visibility = graph.fullscreen("show", {.shader = "counter.frag", .buffers = {{"Count", count_}}})};
   }
 
-  void update(const FrameInputs& /*inputs*/, UniformWriter& writer) override { writer.writeBlock(count_, CountBlock{static_cast<float>(++frames_)}); }
+  void update(const FrameInputs& /*inputs*/, UniformWriter& writer) override {
+    writer.writeBlock(count_, CountBlock{static_cast<float>(++frames_)});
+  }
 
  private:
   Buffer count_;

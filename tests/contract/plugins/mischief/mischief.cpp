@@ -85,19 +85,32 @@ class Mischief final : public Technique {
   Outputs setup(GraphBuilder& graph, const Frame& frame, const EffectPlan& /*plan*/) override {
     const TextureInfo info{frame.size, Format::r32f};
     switch (fault_) {
-      case Fault::throwInSetup: throw std::runtime_error("thrown in setup");
-      case Fault::throwNumberInSetup: throw 42;
-      case Fault::noVisibility: return {};
-      case Fault::unknownHandle: return {.visibility = Texture{999}};
-      case Fault::neverWritten: return {.visibility = graph.texture("blank", info)};
-      case Fault::wrongSize: return {.visibility = graph.fullscreen("small", {.shader = "lit.frag", .size = glm::ivec2(3, 2)})};
-      case Fault::wrongFormat: return {.visibility = graph.fullscreen("bytes", {.shader = "lit.frag", .format = Format::r8})};
-      case Fault::syntaxError: return {.visibility = graph.fullscreen("broken", {.shader = "syntax_error.frag"})};
-      case Fault::missingInclude: return {.visibility = graph.fullscreen("broken", {.shader = "missing_include.frag"})};
-      case Fault::includeOutside: return {.visibility = graph.fullscreen("broken", {.shader = "include_outside.frag"})};
-      case Fault::missingShader: return {.visibility = graph.fullscreen("broken", {.shader = "nowhere.frag"})};
-      case Fault::unknownSampler: return {.visibility = graph.fullscreen("broken", {.shader = "unknown_sampler.frag"})};
-      case Fault::unknownBlock: return {.visibility = graph.fullscreen("broken", {.shader = "unknown_block.frag"})};
+      case Fault::throwInSetup:
+        throw std::runtime_error("thrown in setup");
+      case Fault::throwNumberInSetup:
+        throw 42;
+      case Fault::noVisibility:
+        return {};
+      case Fault::unknownHandle:
+        return {.visibility = Texture{999}};
+      case Fault::neverWritten:
+        return {.visibility = graph.texture("blank", info)};
+      case Fault::wrongSize:
+        return {.visibility = graph.fullscreen("small", {.shader = "lit.frag", .size = glm::ivec2(3, 2)})};
+      case Fault::wrongFormat:
+        return {.visibility = graph.fullscreen("bytes", {.shader = "lit.frag", .format = Format::r8})};
+      case Fault::syntaxError:
+        return {.visibility = graph.fullscreen("broken", {.shader = "syntax_error.frag"})};
+      case Fault::missingInclude:
+        return {.visibility = graph.fullscreen("broken", {.shader = "missing_include.frag"})};
+      case Fault::includeOutside:
+        return {.visibility = graph.fullscreen("broken", {.shader = "include_outside.frag"})};
+      case Fault::missingShader:
+        return {.visibility = graph.fullscreen("broken", {.shader = "nowhere.frag"})};
+      case Fault::unknownSampler:
+        return {.visibility = graph.fullscreen("broken", {.shader = "unknown_sampler.frag"})};
+      case Fault::unknownBlock:
+        return {.visibility = graph.fullscreen("broken", {.shader = "unknown_block.frag"})};
       case Fault::twoWriters: {
         const Texture shared = graph.texture("shared", info);
         graph.cpu("first", {.writes = {shared}, .run = [](CpuContext&) {}});
@@ -105,8 +118,10 @@ class Mischief final : public Technique {
         return {.visibility = shared};
       }
       case Fault::readBeforeWrite:
-        return {.visibility = graph.fullscreen("early", {.shader = "copy.frag", .reads = {{"source", graph.texture("later", info)}}})};
-      default: return {.visibility = cpuPass(graph, frame)};
+        return {.visibility =
+                    graph.fullscreen("early", {.shader = "copy.frag", .reads = {{"source", graph.texture("later", info)}}})};
+      default:
+        return {.visibility = cpuPass(graph, frame)};
     }
   }
 

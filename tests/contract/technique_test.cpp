@@ -1,0 +1,175 @@
+// The contract through a session: whatever a technique does wrong ends in an Error that names it and its pass, and the session
+// goes on as if it had never been.
+#include "gnomon/technique/technique.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "plugin_folder.h"
+#include "render.h"
+
+namespace gnomon::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Each;
+using ::testing::HasSubstr;
+
+/// Scenes of 64x48: what is tested does not depend on the picture's size.
+SessionSetup smallSetup() {
+  return builtinSetup("half_plane", {64, 48});
+}
+
+Registry& testRegistry() {
+  static Registry registry({testPlugin("mischief"), testPlugin("counter")});
+  return registry;
+}
+
+Slot addTestSlot(Session& session, const std::string& name, const Json& values) {
+  const OpenTechnique technique = testRegistry().open(name);
+  Problems problems;
+  const std::shared_ptr<void> parameters = testRegistry().parameters(technique, values, {"test", ""}, problems);
+  problems.throwIfAny();
+  return session.addSlot(technique, parameters);
+}
+
+Image shadowMap(Session& session) {
+  const Slot slot = addSlot(session, "shadow_map", R"({"map_size": 64})");
+  session.frame(slot);
+  return session.visibility(slot);
+}
+
+enum class When { addSlot, frame };
+
+struct Misdeed {
+  const char* fault;
+  When when;                       ///< by then it is noticed
+  std::vector<std::string> words;  ///< what the message must hold besides the technique's name
+};
+
+void PrintTo(const Misdeed& misdeed, std::ostream* out) {
+  *out << misdeed.fault;
+}
+
+class Misdeeds : public ::testing::TestWithParam<Misdeed> {};
+
+TEST_P(Misdeeds, IsAnErrorThatNamesThemAndTheSessionGoesOn) {
+  const Misdeed& misdeed = GetParam();
+  ensureContext();
+  Session session(smallSetup());
+  const Image before = shadowMap(session);
+
+  bool added = false;
+  std::string message;
+  try {
+    const Slot slot = addTestSlot(session, "mischief", {{"fault", misdeed.fault}});
+    added = true;
+    session.frame(slot);
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  EXPECT_EQ(added, misdeed.when == When::frame) << message;
+  EXPECT_THAT(message, HasSubstr("technique 'mischief': "));
+  for (const std::string& word : misdeed.words) EXPECT_THAT(message, HasSubstr(word));
+
+  EXPECT_EQ(shadowMap(session).data, before.data);
+}
+
+const std::vector<Misdeed> kMisdeeds{
+    {"throw_in_create", When::addSlot, {"thrown in create"}},
+    {"throw_in_support", When::addSlot, {"thrown in support"}},
+    {"throw_in_setup", When::addSlot, {"thrown in setup"}},
+    {"throw_number_in_setup", When::addSlot, {}},
+    {"throw_in_update", When::frame, {"thrown in update"}},
+    {"throw_in_pass", When::frame, {"pass 'work'", "thrown in the pass"}},
+    {"throw_number_in_pass", When::frame, {"pass 'work'"}},
+    {"no_visibility", When::addSlot, {"visibility"}},
+    {"unknown_handle", When::addSlot, {"never declared"}},
+    {"never_written", When::addSlot, {"'blank'", "nothing writes"}},
+    {"wrong_size", When::addSlot, {"3x2", "64x48"}},
+    {"wrong_format", When::addSlot, {"r8", "r16f or r32f"}},
+    {"syntax_error", When::addSlot, {"pass 'broken'", "syntax_error.frag:5"}},
+    {"missing_include", When::addSlot, {"pass 'broken'", "missing_include.frag:1", "not_there.glsl"}},
+    {"include_outside", When::addSlot, {"pass 'broken'", "include_outside.frag:1", "leaves the shader folders"}},
+    {"missing_shader", When::addSlot, {"pass 'broken'", "nowhere.frag"}},
+    {"unknown_sampler", When::addSlot, {"pass 'broken'", "'nobodyGaveThis'"}},
+    {"unknown_block", When::addSlot, {"pass 'broken'", "'NobodyGaveThis'"}},
+    {"gl_error", When::frame, {"pass 'work'", "OpenGL"}},
+    {"undeclared_read", When::frame, {"pass 'work'", "did not declare"}},
+    {"undeclared_write", When::frame, {"pass 'work'", "did not declare"}},
+    {"wrong_amount", When::frame, {"pass 'work'", "3072", "3071"}},
+    {"two_writers", When::addSlot, {"pass 'second'", "'shared'", "writer"}},
+    {"read_before_write", When::addSlot, {"pass 'early'", "'later'", "before any pass writes it"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Contract, Misdeeds, ::testing::ValuesIn(kMisdeeds),
+                         [](const ::testing::TestParamInfo<Misdeed>& info) { return std::string(info.param.fault); });
+
+TEST(Contract, WithoutFaultTheSameTechniqueRenders) {  // else every misdeed above could be the same one
+  ensureContext();
+  Session session(smallSetup());
+  const Slot slot = addTestSlot(session, "mischief", {{"fault", "none"}});
+  session.frame(slot);
+  EXPECT_THAT(session.visibility(slot).data, Each(1.0f));
+}
+
+TEST(Contract, ARefusalIsToldAndRendersNothing) {
+  ensureContext();
+  Session session(smallSetup());
+  const Slot slot = addTestSlot(session, "mischief", {{"fault", "refuse"}});
+  EXPECT_FALSE(session.support(slot).ok());
+  EXPECT_EQ(session.support(slot).refusal, "it was asked to refuse");
+  EXPECT_TRUE(session.runTechnique(slot).passes.empty());
+}
+
+TEST(Contract, AFailedPassRunsAgainInTheNextFrame) {
+  ensureContext();
+  Session session(smallSetup());
+  const Slot slot = addTestSlot(session, "mischief", {{"fault", "throw_in_pass"}});
+  EXPECT_THROW(session.frame(slot), Error);
+  EXPECT_THROW(session.frame(slot), Error) << "a pass that failed must not count as done";
+}
+
+TEST(Contract, AMisbehavingSlotLeavesItsNeighbourRunning) {
+  ensureContext();
+  Session session(smallSetup());
+  const Slot good = addSlot(session, "shadow_map", R"({"map_size": 64})");
+  session.frame(good);
+  const Image before = session.visibility(good);
+  const Slot bad = addTestSlot(session, "mischief", {{"fault", "gl_error"}});
+  EXPECT_THROW(session.frame(bad), Error);
+  session.moveLight(session.light());  // all its light passes run again
+  session.frame(good);
+  EXPECT_EQ(session.visibility(good).data, before.data);
+}
+
+// --- update ---
+
+TEST(Contract, UpdateIsCalledOnceAFrameAndItsBlockReachesTheShader) {
+  ensureContext();
+  Session session(smallSetup());
+  const Slot slot = addTestSlot(session, "counter", Json::object());
+  for (const float expected : {0.125f, 0.25f, 0.375f}) {  // exact in binary
+    session.frame(slot);
+    EXPECT_THAT(session.visibility(slot).data, Each(expected));
+  }
+}
+
+TEST(Contract, UniformParameterReachesTheShader) {
+  ensureContext();
+  Session session(smallSetup());
+  const Slot slot = addTestSlot(session, "counter", {{"step", 0.75}});
+  session.frame(slot);
+  EXPECT_THAT(session.visibility(slot).data, Each(0.75f));
+}
+
+TEST(Contract, SpecialisedParameterReachesTheShader) {
+  ensureContext();
+  Session session(smallSetup());
+  const Slot slot = addTestSlot(session, "counter", {{"gain", 3}});
+  session.frame(slot);
+  EXPECT_THAT(session.visibility(slot).data, Each(0.375f));
+}
+
+}  // namespace
+}  // namespace gnomon::test
