@@ -6,6 +6,7 @@ function(gnomon_add_plugin name)
   cmake_parse_arguments(PLUGIN "" "DIRECTORY" "SOURCES;LINK" ${ARGN})
   if(NOT PLUGIN_DIRECTORY)
     set(PLUGIN_DIRECTORY ${GNOMON_HOME}/plugins/${name})
+    set_property(GLOBAL APPEND PROPERTY GNOMON_PLUGINS ${name})  # those of the installation, for who needs them built
   endif()
   add_library(${name} MODULE ${PLUGIN_SOURCES})
   gnomon_compile_options(${name})

@@ -133,6 +133,21 @@ struct Session::State {
   }
 
   SlotState& at(Slot slot) { return slots.at(slot.index); }
+
+  /// Runs code of a plugin. Whatever it throws is copied into an Error that names it, and what OpenGL said of it ends with it.
+  template <class Work>
+  auto guarded(const std::string& technique, const Work& work) {
+    std::string message;
+    try {
+      return work();
+    } catch (const std::exception& error) {
+      message = error.what();
+    } catch (...) {
+      message = "it threw something that is no std::exception";
+    }
+    messages.discard();
+    throw Error(fmt::format("technique '{}': {}", technique, message));
+  }
 };
 
 Session::Session(SessionSetup setup) : state_(std::make_unique<State>(std::move(setup))) {}
@@ -168,7 +183,7 @@ void Session::moveInstances(const std::vector<glm::dmat4>& worlds) {
 Slot Session::addSlot(const OpenTechnique& technique, const std::shared_ptr<const void>& parameters) {
   SlotState slot;
   slot.name = technique.registered->declaration.name;
-  try {
+  state_->guarded(slot.name, [&] {
     slot.technique = technique.entry->create(parameters.get());
     if (state_->plan.has(Rule::receivers)) {
       state_->setUpTechnique(slot, technique, parameters.get());
@@ -177,9 +192,7 @@ Slot Session::addSlot(const OpenTechnique& technique, const std::shared_ptr<cons
     }
     if (slot.support.ok()) state_->setUpShading(slot);
     state_->messages.throwIfError("set-up");
-  } catch (const std::exception& error) {
-    throw Error(fmt::format("technique '{}': {}", slot.name, error.what()));
-  }
+  });
   state_->slots.push_back(std::move(slot));
   return {state_->slots.size() - 1};
 }
@@ -200,12 +213,10 @@ GraphReport Session::runShared(const GraphRun& options) { return state_->run(sta
 GraphReport Session::runTechnique(Slot slot, const GraphRun& options) {
   SlotState& s = state_->at(slot);
   if (!s.graph) return {};
-  try {
+  return state_->guarded(s.name, [&] {
     s.technique->update(state_->inputs(), s.graph->uniforms());
     return state_->run(*s.graph, options);
-  } catch (const std::exception& error) {
-    throw Error(fmt::format("technique '{}': {}", s.name, error.what()));
-  }
+  });
 }
 
 GraphReport Session::runShading(Slot slot, const GraphRun& options) { return state_->run(*state_->at(slot).shading, options); }

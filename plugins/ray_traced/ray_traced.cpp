@@ -34,8 +34,12 @@ class RayTraced final : public Technique {
     graph.facts().samples = penumbra ? p_.samples : 1;
     const Buffer built = graph.buffer("acceleration structure", sizeof(int));
     const auto tracer = std::make_shared<Tracer>();
-    graph.cpu("build", {.inputs = {Input::geometry}, .buffers = {built}, .run = [=](CpuContext& context) {
-                          tracer->build(context.frame().scene);
+    // Casters that may be very near to the light: coordinates relative to it keep their distance's digits.
+    const bool nearLight = plan.has(Effect::largeDepthRange) && frame.light.type != LightType::directional;
+    const InputSet buildInputs = nearLight ? InputSet{Input::geometry, Input::light} : InputSet{Input::geometry};
+    graph.cpu("build", {.inputs = buildInputs, .buffers = {built}, .run = [=](CpuContext& context) {
+                          const FrameInputs& now = context.frame();
+                          tracer->build(now.scene, nearLight ? std::optional(now.light.position) : std::nullopt);
                           context.writeBlock(built, tracer->builds());
                         }});
     const GBuffer g = frame.gbuffer;

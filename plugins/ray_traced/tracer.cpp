@@ -24,11 +24,12 @@ Tracer::Tracer() : device_(rtcNewDevice(nullptr)) {
   packets_ = rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
 }
 
-void Tracer::build(const Scene& scene) {
+void Tracer::build(const Scene& scene, const std::optional<glm::dvec3>& source) {
   ++builds_;
   Bounds bounds;
   for (const Instance& instance : scene.instances) bounds.add(worldBounds(scene, instance));
-  origin_ = bounds.empty() ? glm::dvec3(0.0) : bounds.centre();
+  halvesRays_ = source.has_value();
+  origin_ = source ? *source : bounds.empty() ? glm::dvec3(0.0) : bounds.centre();
 
   scene_.reset(rtcNewScene(device_.get()));
   rtcSetSceneFlags(scene_.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
@@ -93,15 +94,26 @@ void ShadowRays::start(const Receiver& receiver, float& visibility) {
 void ShadowRays::add(const glm::dvec3& sample, bool direction) {
   const glm::dvec3 towards = direction ? sample : sample - tracer_.origin() - origin_;
   if (glm::dot(normal_, towards) <= 0.0) return;
+  ++counts_.back().rays;
+  if (tracer_.halvesRays() && !direction) {
+    push(origin_, 0.5 * towards, false);
+    push(sample - tracer_.origin(), -0.5 * towards, false);
+  } else {
+    push(origin_, towards, direction);
+  }
+  if (filled_ == kWidth) flush();
+}
+
+void ShadowRays::push(const glm::dvec3& origin, const glm::dvec3& towards, bool endless) {
   const std::size_t lane = filled_++;
-  rays_.org_x[lane] = static_cast<float>(origin_.x);
-  rays_.org_y[lane] = static_cast<float>(origin_.y);
-  rays_.org_z[lane] = static_cast<float>(origin_.z);
+  rays_.org_x[lane] = static_cast<float>(origin.x);
+  rays_.org_y[lane] = static_cast<float>(origin.y);
+  rays_.org_z[lane] = static_cast<float>(origin.z);
   rays_.dir_x[lane] = static_cast<float>(towards.x);
   rays_.dir_y[lane] = static_cast<float>(towards.y);
   rays_.dir_z[lane] = static_cast<float>(towards.z);
   rays_.tnear[lane] = 0.0f;
-  rays_.tfar[lane] = direction ? std::numeric_limits<float>::infinity() : 1.0f;
+  rays_.tfar[lane] = endless ? std::numeric_limits<float>::infinity() : 1.0f;
   rays_.mask[lane] = ~0U;
   rays_.time[lane] = 0.0f;
   rays_.flags[lane] = 0;
@@ -109,8 +121,6 @@ void ShadowRays::add(const glm::dvec3& sample, bool direction) {
   context_.instance[lane] = instance_;
   context_.triangle[lane] = triangle_;
   owner_[lane] = counts_.size() - 1;
-  ++counts_.back().rays;
-  if (filled_ == kWidth) flush();
 }
 
 void ShadowRays::flush() {
@@ -128,8 +138,10 @@ void ShadowRays::flush() {
       rays_.tfar[lane] = ray.tfar;
     }
   }
-  for (std::size_t lane = 0; lane < filled_; ++lane) {
-    if (rays_.tfar[lane] < 0.0f) ++counts_[owner_[lane]].blocked;  // Embree marks a blocked ray by -inf
+  const auto blocked = [&](std::size_t lane) { return rays_.tfar[lane] < 0.0f; };  // Embree marks it by -inf
+  const std::size_t step = tracer_.halvesRays() ? 2 : 1;
+  for (std::size_t lane = 0; lane < filled_; lane += step) {
+    if (blocked(lane) || blocked(lane + step - 1)) ++counts_[owner_[lane]].blocked;
   }
   filled_ = 0;
 }

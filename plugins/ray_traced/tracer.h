@@ -7,22 +7,27 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gnomon/scene/scene.h"
 
 namespace gnomon {
 
-/// Every caster's triangles, in float, relative to the middle of their bounds: a world offset costs no digits.
+/// Every caster's triangles, in float, relative to one origin: a world offset costs no digits.
 class Tracer {
  public:
   Tracer();
-  void build(const Scene& scene);
+  /// `source` is given where casters may be so near to the light that their distance from it has no digits left in a float
+  /// of the scene's size: it is the origin then, and each ray is traced in two halves, from both its ends. Otherwise the
+  /// origin is the middle of the scene.
+  void build(const Scene& scene, const std::optional<glm::dvec3>& source);
   int builds() const { return builds_; }
 
   RTCScene scene() const { return scene_.get(); }
   const glm::dvec3& origin() const { return origin_; }
   bool packets() const { return packets_; }
+  bool halvesRays() const { return halvesRays_; }
   /// Bound of the coordinates' magnitude of a caster's or receiver's triangle, relative to origin(), metres.
   double magnitude(std::uint32_t instance, std::uint32_t triangle) const;
 
@@ -36,6 +41,7 @@ class Tracer {
   std::vector<std::vector<float>> magnitudes_;  ///< by instance and triangle
   glm::dvec3 origin_{0.0};
   bool packets_ = false;
+  bool halvesRays_ = false;
   int builds_ = 0;
 };
 
@@ -59,7 +65,7 @@ class ShadowRays {
   std::uint64_t traced() const { return traced_; }
 
  private:
-  static constexpr std::size_t kWidth = 16;
+  static constexpr std::size_t kWidth = 16;  // even: both halves of a ray are in one packet
   struct Count {
     float* visibility;
     std::uint32_t rays = 0;
@@ -71,6 +77,7 @@ class ShadowRays {
   };
 
   static void rejectOwnTriangle(const RTCFilterFunctionNArguments* arguments);
+  void push(const glm::dvec3& origin, const glm::dvec3& towards, bool endless);
   void flush();
 
   const Tracer& tracer_;

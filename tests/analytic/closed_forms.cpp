@@ -92,9 +92,9 @@ double boxFilteredStep(double x, double edge, double width) {
   return std::clamp((x - edge) / width + 0.5, 0.0, 1.0);
 }
 
-double boxFilteredTexels(double x, int edgeTexel, int taps) {
+double boxFilteredTexels(double x, int edgeTexel, int taps, double spread) {
   int lit = 0;
-  for (int tap = 0; tap < taps; ++tap) lit += std::floor(x + tap - 0.5 * (taps - 1)) >= edgeTexel ? 1 : 0;
+  for (int tap = 0; tap < taps; ++tap) lit += std::floor(x + spread * (tap - 0.5 * (taps - 1))) >= edgeTexel ? 1 : 0;
   return static_cast<double>(lit) / taps;
 }
 

@@ -63,8 +63,8 @@ double square(glm::dvec2 receiver, double side, glm::dvec2 centre, double blocke
 
 /// A hard step at `edge`, lit above it, averaged over a box of `width` (> 0) about x.
 double boxFilteredStep(double x, double edge, double width);
-/// Percentage-closer filtering of the same step with `taps` (>= 1) nearest compares a texel apart: x in texels, the map's
-/// texels lit from the index `edgeTexel` on.
-double boxFilteredTexels(double x, int edgeTexel, int taps);
+/// Percentage-closer filtering of the same step with `taps` (>= 1) nearest compares, `spread` texels apart: x in texels, the
+/// map's texels lit from the index `edgeTexel` on.
+double boxFilteredTexels(double x, int edgeTexel, int taps, double spread = 1.0);
 
 }  // namespace gnomon::closed_form

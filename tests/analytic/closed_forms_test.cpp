@@ -149,9 +149,10 @@ TEST(ClosedForms, BoxFilteredStepIsTheMeanOfTheStep) {
 TEST(ClosedForms, BoxFilteredTexelsOfOddAndEvenKernels) {
   EXPECT_EQ(boxFilteredTexels(7.5, 8, 1), 0.0);
   EXPECT_EQ(boxFilteredTexels(8.5, 8, 1), 1.0);
-  EXPECT_DOUBLE_EQ(boxFilteredTexels(7.5, 8, 3), 1.0 / 3.0);  // texels 6, 7, 8
-  EXPECT_DOUBLE_EQ(boxFilteredTexels(7.7, 8, 2), 0.5);        // at 7.2 and 8.2: half a texel's shift
-  EXPECT_DOUBLE_EQ(boxFilteredTexels(7.3, 8, 2), 0.0);        // at 6.8 and 7.8
+  EXPECT_DOUBLE_EQ(boxFilteredTexels(7.5, 8, 3), 1.0 / 3.0);       // texels 6, 7, 8
+  EXPECT_DOUBLE_EQ(boxFilteredTexels(7.7, 8, 2), 0.5);             // at 7.2 and 8.2: half a texel's shift
+  EXPECT_DOUBLE_EQ(boxFilteredTexels(7.3, 8, 2), 0.0);             // at 6.8 and 7.8
+  EXPECT_DOUBLE_EQ(boxFilteredTexels(7.5, 8, 3, 2.0), 1.0 / 3.0);  // texels 5, 7, 9
 }
 
 }  // namespace

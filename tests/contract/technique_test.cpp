@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
+#include "gnomon/base/json.h"
 #include "plugin_folder.h"
 #include "render.h"
 
@@ -62,7 +65,7 @@ TEST_P(Misdeeds, IsAnErrorThatNamesThemAndTheSessionGoesOn) {
   bool added = false;
   std::string message;
   try {
-    const Slot slot = addTestSlot(session, "mischief", {{"fault", misdeed.fault}});
+    const Slot slot = addTestSlot(session, "mischief", Json{{"fault", misdeed.fault}});
     added = true;
     session.frame(slot);
   } catch (const Error& error) {
@@ -79,10 +82,10 @@ const std::vector<Misdeed> kMisdeeds{
     {"throw_in_create", When::addSlot, {"thrown in create"}},
     {"throw_in_support", When::addSlot, {"thrown in support"}},
     {"throw_in_setup", When::addSlot, {"thrown in setup"}},
-    {"throw_number_in_setup", When::addSlot, {}},
+    {"throw_number_in_setup", When::addSlot, {"no std::exception"}},
     {"throw_in_update", When::frame, {"thrown in update"}},
     {"throw_in_pass", When::frame, {"pass 'work'", "thrown in the pass"}},
-    {"throw_number_in_pass", When::frame, {"pass 'work'"}},
+    {"throw_number_in_pass", When::frame, {"pass 'work'", "no std::exception"}},
     {"no_visibility", When::addSlot, {"visibility"}},
     {"unknown_handle", When::addSlot, {"never declared"}},
     {"never_written", When::addSlot, {"'blank'", "nothing writes"}},
@@ -103,12 +106,12 @@ const std::vector<Misdeed> kMisdeeds{
 };
 
 INSTANTIATE_TEST_SUITE_P(Contract, Misdeeds, ::testing::ValuesIn(kMisdeeds),
-                         [](const ::testing::TestParamInfo<Misdeed>& info) { return std::string(info.param.fault); });
+                         [](const ::testing::TestParamInfo<Misdeed>& each) { return std::string(each.param.fault); });
 
 TEST(Contract, WithoutFaultTheSameTechniqueRenders) {  // else every misdeed above could be the same one
   ensureContext();
   Session session(smallSetup());
-  const Slot slot = addTestSlot(session, "mischief", {{"fault", "none"}});
+  const Slot slot = addTestSlot(session, "mischief", Json{{"fault", "none"}});
   session.frame(slot);
   EXPECT_THAT(session.visibility(slot).data, Each(1.0f));
 }
@@ -116,7 +119,7 @@ TEST(Contract, WithoutFaultTheSameTechniqueRenders) {  // else every misdeed abo
 TEST(Contract, ARefusalIsToldAndRendersNothing) {
   ensureContext();
   Session session(smallSetup());
-  const Slot slot = addTestSlot(session, "mischief", {{"fault", "refuse"}});
+  const Slot slot = addTestSlot(session, "mischief", Json{{"fault", "refuse"}});
   EXPECT_FALSE(session.support(slot).ok());
   EXPECT_EQ(session.support(slot).refusal, "it was asked to refuse");
   EXPECT_TRUE(session.runTechnique(slot).passes.empty());
@@ -125,7 +128,7 @@ TEST(Contract, ARefusalIsToldAndRendersNothing) {
 TEST(Contract, AFailedPassRunsAgainInTheNextFrame) {
   ensureContext();
   Session session(smallSetup());
-  const Slot slot = addTestSlot(session, "mischief", {{"fault", "throw_in_pass"}});
+  const Slot slot = addTestSlot(session, "mischief", Json{{"fault", "throw_in_pass"}});
   EXPECT_THROW(session.frame(slot), Error);
   EXPECT_THROW(session.frame(slot), Error) << "a pass that failed must not count as done";
 }
@@ -136,7 +139,7 @@ TEST(Contract, AMisbehavingSlotLeavesItsNeighbourRunning) {
   const Slot good = addSlot(session, "shadow_map", R"({"map_size": 64})");
   session.frame(good);
   const Image before = session.visibility(good);
-  const Slot bad = addTestSlot(session, "mischief", {{"fault", "gl_error"}});
+  const Slot bad = addTestSlot(session, "mischief", Json{{"fault", "gl_error"}});
   EXPECT_THROW(session.frame(bad), Error);
   session.moveLight(session.light());  // all its light passes run again
   session.frame(good);
@@ -158,7 +161,7 @@ TEST(Contract, UpdateIsCalledOnceAFrameAndItsBlockReachesTheShader) {
 TEST(Contract, UniformParameterReachesTheShader) {
   ensureContext();
   Session session(smallSetup());
-  const Slot slot = addTestSlot(session, "counter", {{"step", 0.75}});
+  const Slot slot = addTestSlot(session, "counter", Json{{"step", 0.75}});
   session.frame(slot);
   EXPECT_THAT(session.visibility(slot).data, Each(0.75f));
 }
@@ -166,7 +169,7 @@ TEST(Contract, UniformParameterReachesTheShader) {
 TEST(Contract, SpecialisedParameterReachesTheShader) {
   ensureContext();
   Session session(smallSetup());
-  const Slot slot = addTestSlot(session, "counter", {{"gain", 3}});
+  const Slot slot = addTestSlot(session, "counter", Json{{"gain", 3}});
   session.frame(slot);
   EXPECT_THAT(session.visibility(slot).data, Each(0.375f));
 }

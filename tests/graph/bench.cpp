@@ -26,7 +26,9 @@ std::unique_ptr<Graph> Bench::graph(const std::string& name, glm::ivec2 size) co
   return std::make_unique<Graph>(name, size, gl::ShaderSources{{installationDirectory() / "shaders"}, {}});
 }
 
-FrameInputs Bench::inputs() const { return {scene, bounds, *gpu_, light, camera, {8, 4}, 0.0}; }
+FrameInputs Bench::inputs() const {
+  return {scene, bounds, *gpu_, light, camera, {8, 4}, 0.0};
+}
 
 GraphReport Bench::run(Graph& graph, GraphRun options) {
   options.messages = messages_.get();
@@ -42,8 +44,9 @@ std::vector<std::string> ran(const GraphReport& report) {
 }
 
 std::string shaderWriting(GraphBuilder& graph, const std::string& expression, const std::string& declarations) {
-  const std::string text = fmt::format(
-      "{}\nout float result;\nvoid main() {{ const ivec2 p = ivec2(gl_FragCoord.xy); result = {}; }}\n", declarations, expression);
+  const std::string text =
+      fmt::format("{}\nout float result;\nvoid main() {{ const ivec2 p = ivec2(gl_FragCoord.xy); result = {}; }}\n",
+                  declarations, expression);
   const std::string name = fmt::format("test {:x}", std::hash<std::string>{}(text));
   graph.include(name, text);
   return name;

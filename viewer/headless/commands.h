@@ -27,6 +27,12 @@ struct RenderOptions {
   std::string shard;  ///< "i/n"
 };
 
+struct StabilityOptions {
+  std::vector<std::string> techniques;  ///< empty: all
+  std::vector<std::string> cases;       ///< empty: all
+  bool list = false;
+};
+
 int listCommand(const CommonOptions& common);
 int describeCommand(const CommonOptions& common, const std::string& technique);
 int scenesCommand(const CommonOptions& common);
@@ -34,5 +40,6 @@ int validateCommand(const CommonOptions& common, const std::vector<std::filesyst
 int schemaCommand(const std::filesystem::path& directory);
 int planCommand(const CommonOptions& common, const std::filesystem::path& config);
 int renderCommand(const CommonOptions& common, const RenderOptions& options);
+int stabilityCommand(const CommonOptions& common, const StabilityOptions& options);
 
 }  // namespace gnomon

@@ -19,6 +19,7 @@ int run(int argc, char** argv) {
 
   CommonOptions common;
   RenderOptions render;
+  StabilityOptions stability;
   std::string technique;
   std::vector<std::filesystem::path> files;
   std::filesystem::path config;
@@ -81,6 +82,14 @@ int run(int argc, char** argv) {
   batch->add_flag("--resume", render.resume, "keep the results that are there and run what is missing");
   batch->add_option("--shard", render.shard, "i/n: take every n-th job, from the i-th (0-based)");
   batch->callback([&] { exitCode = renderCommand(common, render); });
+
+  CLI::App* hard = app.add_subcommand("stability", "techniques through the hard cases: pass, refused or fail, with figures");
+  addCommon(hard, true);
+  hard->add_option("techniques", stability.techniques, "names; all when none is given");
+  hard->add_option("--case", stability.cases, "only these cases");
+  hard->add_flag("--list", stability.list, "what the cases are, and what each is for");
+  hard->add_flag("--json", common.json, "for programs");
+  hard->callback([&] { exitCode = stabilityCommand(common, stability); });
 
   CLI::App* schema = app.add_subcommand("schema", "writes the JSON Schemas that editors use");
   schema->add_option("directory", schemaDirectory, "where to")->default_val("configs/schema");

@@ -55,6 +55,8 @@ void DebugMessages::throwIfError(const std::string& where) {
   throw Error(message);
 }
 
+void DebugMessages::discard() { state_->errors.clear(); }
+
 // --- EGL ----------------------------------------------------------------------------------------------------------------
 
 struct HeadlessContext::State {

@@ -23,6 +23,8 @@ class DebugMessages {
 
   /// Throws Error with everything the driver called an error since the last call; `where` says what was running.
   void throwIfError(const std::string& where);
+  /// Forgets them: whoever made them has failed already, and who comes next is not to blame.
+  void discard();
 
  private:
   struct State;

@@ -9,57 +9,72 @@
 namespace gnomon::gl {
 
 namespace detail {
-void deleteTexture(GLuint name) { glDeleteTextures(1, &name); }
-void deleteBuffer(GLuint name) { glDeleteBuffers(1, &name); }
-void deleteFramebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
-void deleteVertexArray(GLuint name) { glDeleteVertexArrays(1, &name); }
-void deleteProgram(GLuint name) { glDeleteProgram(name); }
-void deleteShader(GLuint name) { glDeleteShader(name); }
-void deleteQuery(GLuint name) { glDeleteQueries(1, &name); }
-void deleteSampler(GLuint name) { glDeleteSamplers(1, &name); }
+void deleteTexture(GLuint name) {
+  glDeleteTextures(1, &name);
+}
+void deleteBuffer(GLuint name) {
+  glDeleteBuffers(1, &name);
+}
+void deleteFramebuffer(GLuint name) {
+  glDeleteFramebuffers(1, &name);
+}
+void deleteVertexArray(GLuint name) {
+  glDeleteVertexArrays(1, &name);
+}
+void deleteProgram(GLuint name) {
+  glDeleteProgram(name);
+}
+void deleteShader(GLuint name) {
+  glDeleteShader(name);
+}
+void deleteQuery(GLuint name) {
+  glDeleteQueries(1, &name);
+}
+void deleteSampler(GLuint name) {
+  glDeleteSamplers(1, &name);
+}
 }  // namespace detail
 
-namespace {
-void label(GLenum kind, GLuint name, const std::string& text) {
-  glObjectLabel(kind, name, static_cast<GLsizei>(std::min<std::size_t>(text.size(), 200)), text.c_str());
+void setLabel(GLenum kind, GLuint name, const std::string& label) {
+  // GL_MAX_LABEL_LENGTH is 256 at least, with the terminating zero.
+  glObjectLabel(kind, name, static_cast<GLsizei>(std::min<std::size_t>(label.size(), 255)), label.c_str());
 }
-}  // namespace
 
-TextureObject makeTexture2D(GLenum internalFormat, glm::ivec2 size, const std::string& text) {
+TextureObject makeTexture2D(GLenum internalFormat, glm::ivec2 size, const std::string& label) {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
   if (size.x < 1 || size.y < 1 || size.x > limit || size.y > limit) {
-    throw Error(fmt::format("texture '{}': {}x{} is outside this driver's 1..{}", text, size.x, size.y, limit));
+    throw Error(fmt::format("texture '{}': {}x{} is outside this driver's 1..{}", label, size.x, size.y, limit));
   }
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &name);
   TextureObject texture(name);
   glTextureStorage2D(name, 1, internalFormat, size.x, size.y);
-  label(GL_TEXTURE, name, text);
+  setLabel(GL_TEXTURE, name, label);
   return texture;
 }
 
-BufferObject makeBuffer(std::size_t bytes, const void* data, const std::string& text) {
+BufferObject makeBuffer(std::size_t bytes, const void* data, const std::string& label) {
   GLuint name = 0;
   glCreateBuffers(1, &name);
   BufferObject buffer(name);
-  glNamedBufferStorage(name, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)), bytes == 0 ? nullptr : data,
-                       GL_DYNAMIC_STORAGE_BIT);
-  label(GL_BUFFER, name, text);
+  // OpenGL has no empty buffers; nothing is read from `data` beyond `bytes`.
+  glNamedBufferStorage(name, bytes == 0 ? 16 : static_cast<GLsizeiptr>(bytes), bytes == 0 ? nullptr : data, GL_DYNAMIC_STORAGE_BIT);
+  setLabel(GL_BUFFER, name, label);
   return buffer;
 }
 
-FramebufferObject makeFramebuffer(const std::string& text) {
+FramebufferObject makeFramebuffer(const std::string& label) {
   GLuint name = 0;
   glCreateFramebuffers(1, &name);
-  label(GL_FRAMEBUFFER, name, text);
+  setLabel(GL_FRAMEBUFFER, name, label);
   return FramebufferObject(name);
 }
 
-VertexArrayObject makeVertexArray(const std::string& text) {
+VertexArrayObject makeVertexArray(const std::string& label) {
   GLuint name = 0;
   glCreateVertexArrays(1, &name);
-  label(GL_VERTEX_ARRAY, name, text);
+  setLabel(GL_VERTEX_ARRAY, name, label);
   return VertexArrayObject(name);
 }
 

@@ -53,6 +53,9 @@ using ShaderObject = Object<&detail::deleteShader>;
 using QueryObject = Object<&detail::deleteQuery>;
 using SamplerObject = Object<&detail::deleteSampler>;
 
+/// Names an object for debuggers; cut to what every driver takes.
+void setLabel(GLenum kind, GLuint name, const std::string& label);
+
 /// Immutable storage of one level. Throws Error beyond the driver's limit, naming it.
 TextureObject makeTexture2D(GLenum internalFormat, glm::ivec2 size, const std::string& label);
 /// Immutable storage, writable by glNamedBufferSubData. `bytes` may be 0 (16 are taken).

@@ -38,7 +38,8 @@ class Expander {
   void expand(const std::string& name, const std::filesystem::path& besides, const std::string& from, int depth) {
     if (depth > kMaxIncludeDepth) throw Error(from + ": #include nested deeper than 32");
     const std::filesystem::path relative(name);
-    if (relative.is_absolute() || std::any_of(relative.begin(), relative.end(), [](const auto& part) { return part == ".."; })) {
+    if (relative.is_absolute() ||
+        std::any_of(relative.begin(), relative.end(), [](const auto& part) { return part == ".."; })) {
       throw Error(fmt::format("{}: \"{}\" leaves the shader folders; give a path below them", from, name));
     }
     std::string text;
@@ -57,7 +58,8 @@ class Expander {
   ExpandedShader result;
 
  private:
-  std::filesystem::path locate(const std::filesystem::path& relative, const std::filesystem::path& besides, const std::string& from) {
+  std::filesystem::path locate(const std::filesystem::path& relative, const std::filesystem::path& besides,
+                               const std::string& from) {
     if (!besides.empty() && std::filesystem::is_regular_file(besides / relative)) return besides / relative;
     std::string searched;
     for (const auto& directory : sources_.directories) {
@@ -120,10 +122,10 @@ ExpandedShader expandShader(const ShaderSources& sources, const std::string& fil
   return std::move(expander.result);
 }
 
-ProgramObject makeProgram(const ShaderSources& sources, const std::vector<ShaderStage>& stages, const std::vector<Constant>& constants,
-                          const std::string& label) {
+ProgramObject makeProgram(const ShaderSources& sources, const std::vector<ShaderStage>& stages,
+                          const std::vector<Constant>& constants, const std::string& label) {
   ProgramObject program(glCreateProgram());
-  glObjectLabel(GL_PROGRAM, program.name(), -1, label.c_str());
+  setLabel(GL_PROGRAM, program.name(), label);
   std::vector<ShaderObject> shaders;
   for (const ShaderStage& stage : stages) {
     const ExpandedShader source = expandShader(sources, stage.file, constants);

@@ -41,7 +41,7 @@ struct ExpandedShader {
 ExpandedShader expandShader(const ShaderSources& sources, const std::string& file, const std::vector<Constant>& constants);
 
 /// Compiles and links. Throws Error with the driver's messages, each at its file:line.
-ProgramObject makeProgram(const ShaderSources& sources, const std::vector<ShaderStage>& stages, const std::vector<Constant>& constants,
-                          const std::string& label);
+ProgramObject makeProgram(const ShaderSources& sources, const std::vector<ShaderStage>& stages,
+                          const std::vector<Constant>& constants, const std::string& label);
 
 }  // namespace gnomon::gl

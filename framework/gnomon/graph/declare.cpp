@@ -12,14 +12,14 @@ class GraphDeclaration final : public GraphBuilder {
  public:
   explicit GraphDeclaration(Graph::State& state) : s_(state) {}
 
-  Texture texture(const std::string& name, const TextureInfo& info) override { return addTexture(name, info, -1); }
+  Texture texture(const std::string& name, const TextureInfo& info) override { return addTexture(name, info, kNoWriter); }
 
   Buffer buffer(const std::string& name, std::size_t bytes) override {
     auto resource = std::make_shared<BufferResource>();
     resource->name = name;
     resource->bytes = bytes;
     resource->contents.assign(bytes, std::byte{0});
-    resource->object = gl::makeBuffer(bytes, resource->contents.data(), name);
+    resource->object = gl::makeBuffer(bytes, resource->contents.data(), s_.name + "/" + name);
     s_.buffers.push_back(std::move(resource));
     s_.bufferImported.push_back(false);
     return {static_cast<int>(s_.buffers.size()) - 1};
@@ -44,25 +44,26 @@ class GraphDeclaration final : public GraphBuilder {
     const Texture target = addTexture(name, {node.size, pass.format}, passIndex());
     node.writes = {target};
     node.kind = pass;
-    bind(node, {{GL_VERTEX_SHADER, "gnomon/fullscreen.vert"}, {GL_FRAGMENT_SHADER, pass.shader}}, pass.reads, pass.buffers, pass.constants);
+    bind(node, {{GL_VERTEX_SHADER, "gnomon/fullscreen.vert"}, {GL_FRAGMENT_SHADER, pass.shader}}, pass.reads, pass.buffers,
+         pass.constants);
     return target;
   }
 
   void raster(const std::string& name, const RasterPass& pass) override {
     PassNode& node = addPass(name);
     node.inputs = {Input::geometry};
-    node.writes = pass.colours;
-    if (pass.depth) node.writes.push_back(*pass.depth);
+    for (const Texture colour : pass.colours) addWrite(node, colour);
+    if (pass.depth) addWrite(node, *pass.depth);
     if (node.writes.empty()) throw Error(fmt::format("pass '{}' writes nothing", name));
-    node.size = s_.textures[checked(node.writes[0], name)]->info.size;
-    for (const Texture texture : node.writes) {
-      const std::size_t i = checked(texture, name);
-      if (s_.writer[i] != -1) throw Error(fmt::format("pass '{}': texture '{}' has a writer already", name, s_.textures[i]->name));
-      if (s_.textures[i]->info.size != node.size) throw Error(fmt::format("pass '{}': its targets differ in size", name));
-      s_.writer[i] = passIndex();
+    node.size = infoOf(node.writes[0]).size;
+    for (const Texture target : node.writes) {
+      const TextureInfo& info = infoOf(target);
+      if (info.size == node.size) continue;
+      throw Error(fmt::format("pass '{}': its targets differ in size: '{}' is {}x{}, '{}' {}x{}", name, nameOf(node.writes[0]),
+                              node.size.x, node.size.y, nameOf(target), info.size.x, info.size.y));
     }
     node.kind = pass;
-    node.bufferReads.push_back(s_.drawLists.at(static_cast<std::size_t>(pass.draws.id)).records);
+    node.bufferReads.push_back(recordsOf(pass.draws, name));
     std::vector<gl::ShaderStage> stages{{GL_VERTEX_SHADER, pass.vertex}};
     if (!pass.fragment.empty()) stages.push_back({GL_FRAGMENT_SHADER, pass.fragment});
     bind(node, stages, pass.reads, pass.buffers, pass.constants);
@@ -72,15 +73,15 @@ class GraphDeclaration final : public GraphBuilder {
     PassNode& node = addPass(name);
     node.inputs = pass.inputs;
     for (const Texture texture : pass.reads) addRead(node, texture);
-    for (const Buffer buffer : pass.after) node.bufferReads.push_back(s_.buffers.at(static_cast<std::size_t>(buffer.id)));
-    for (const Texture texture : pass.writes) {
-      const std::size_t i = checked(texture, name);
-      if (s_.writer[i] != -1) throw Error(fmt::format("pass '{}': texture '{}' has a writer already", name, s_.textures[i]->name));
-      s_.writer[i] = passIndex();
+    for (const Buffer buffer : pass.after) node.bufferReads.push_back(s_.buffers[checked(buffer, name)]);
+    for (const Texture texture : pass.writes) addWrite(node, texture);
+    for (const Buffer buffer : pass.buffers) {
+      const std::size_t i = checked(buffer, name);
+      if (s_.bufferImported[i])
+        throw Error(fmt::format("pass '{}': buffer '{}' belongs to another graph", name, s_.buffers[i]->name));
+      addWrite(node, s_.buffers[i]);
     }
-    node.writes = pass.writes;
-    for (const Buffer buffer : pass.buffers) node.bufferWrites.push_back(s_.buffers.at(static_cast<std::size_t>(buffer.id)));
-    for (const DrawList list : pass.draws) node.bufferWrites.push_back(s_.drawLists.at(static_cast<std::size_t>(list.id)).records);
+    for (const DrawList list : pass.draws) addWrite(node, recordsOf(list, name));
     node.kind = pass;
   }
 
@@ -88,7 +89,7 @@ class GraphDeclaration final : public GraphBuilder {
 
   Texture import(const std::string& /*name*/, const std::shared_ptr<TextureResource>& resource) override {
     s_.textures.push_back(resource);
-    s_.writer.push_back(-2);
+    s_.writer.push_back(kImported);
     return {static_cast<int>(s_.textures.size()) - 1};
   }
   Buffer import(const std::string& /*name*/, const std::shared_ptr<BufferResource>& resource) override {
@@ -121,12 +122,62 @@ class GraphDeclaration final : public GraphBuilder {
     }
     return static_cast<std::size_t>(texture.id);
   }
+  std::size_t checked(Buffer buffer, const std::string& pass) const {
+    if (buffer.id < 0 || static_cast<std::size_t>(buffer.id) >= s_.buffers.size()) {
+      throw Error(fmt::format("pass '{}' uses a buffer that was never declared", pass));
+    }
+    return static_cast<std::size_t>(buffer.id);
+  }
+  const std::shared_ptr<BufferResource>& recordsOf(DrawList list, const std::string& pass) const {
+    if (list.id < 0 || static_cast<std::size_t>(list.id) >= s_.drawLists.size()) {
+      throw Error(fmt::format("pass '{}' uses a draw list that was never declared", pass));
+    }
+    return s_.drawLists[static_cast<std::size_t>(list.id)].records;
+  }
+  const std::string& nameOf(Texture texture) const { return s_.textures[static_cast<std::size_t>(texture.id)]->name; }
+  const TextureInfo& infoOf(Texture texture) const { return s_.textures[static_cast<std::size_t>(texture.id)]->info; }
+
+  void addWrite(PassNode& node, Texture texture) {
+    const std::size_t i = checked(texture, node.name);
+    if (s_.writer[i] == kImported) {
+      throw Error(fmt::format("pass '{}': texture '{}' belongs to another graph", node.name, s_.textures[i]->name));
+    }
+    if (s_.writer[i] != kNoWriter)
+      throw Error(fmt::format("pass '{}': texture '{}' has a writer already", node.name, s_.textures[i]->name));
+    s_.writer[i] = passIndex();
+    node.writes.push_back(texture);
+  }
+
+  /// Passes run in the order of their declaration: whoever reads the buffer must come later.
+  void addWrite(PassNode& node, const std::shared_ptr<BufferResource>& buffer) {
+    const auto has = [&](const auto& list) { return std::find(list.begin(), list.end(), buffer) != list.end(); };
+    for (const PassNode& other : s_.passes) {
+      if (has(other.bufferWrites)) {
+        throw Error(fmt::format("pass '{}': buffer '{}' has a writer already, '{}'", node.name, buffer->name, other.name));
+      }
+      if (has(other.bufferReads)) {
+        throw Error(fmt::format("pass '{}' writes buffer '{}' after '{}' has read it", node.name, buffer->name, other.name));
+      }
+    }
+    node.bufferWrites.push_back(buffer);
+  }
 
   void addRead(PassNode& node, Texture texture) {
     const std::size_t i = checked(texture, node.name);
-    if (s_.writer[i] == -1) throw Error(fmt::format("pass '{}' reads texture '{}' before any pass writes it", node.name, s_.textures[i]->name));
-    if (s_.writer[i] == passIndex()) throw Error(fmt::format("pass '{}' reads its own target '{}'", node.name, s_.textures[i]->name));
+    if (s_.writer[i] == kNoWriter)
+      throw Error(fmt::format("pass '{}' reads texture '{}' before any pass writes it", node.name, s_.textures[i]->name));
+    if (s_.writer[i] == passIndex())
+      throw Error(fmt::format("pass '{}' reads its own target '{}'", node.name, s_.textures[i]->name));
     node.textureReads.push_back(s_.textures[i]);
+  }
+
+  /// A uniform block in a standard layout is active even if nothing of it is used: ask who refers to it. (Not so for storage
+  /// blocks: Mesa 22.3 says of every one that nobody does.)
+  static bool isReferenced(GLuint program, GLuint uniformBlock) {
+    const std::array<GLenum, 2> users{GL_REFERENCED_BY_VERTEX_SHADER, GL_REFERENCED_BY_FRAGMENT_SHADER};
+    std::array<GLint, 2> used{};
+    glGetProgramResourceiv(program, GL_UNIFORM_BLOCK, uniformBlock, 2, users.data(), 2, nullptr, used.data());
+    return used[0] != 0 || used[1] != 0;
   }
 
   /// Compiles, then finds by introspection which samplers and blocks the program really uses: listed ones first, then
@@ -178,6 +229,7 @@ class GraphDeclaration final : public GraphBuilder {
     GLint count = 0;
     glGetProgramInterfaceiv(program, interface, GL_ACTIVE_RESOURCES, &count);
     for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+      if (target == GL_UNIFORM_BUFFER && !isReferenced(program, i)) continue;
       std::array<char, 256> text{};
       glGetProgramResourceName(program, interface, i, static_cast<GLsizei>(text.size()), nullptr, text.data());
       const std::string name(text.data());
@@ -187,6 +239,9 @@ class GraphDeclaration final : public GraphBuilder {
         glShaderStorageBlockBinding(program, i, i);
       }
       if (name == "DrawRecords" || name == "TriangleNormals") {  // the graph's own: bound when the pass draws
+        if (!std::holds_alternative<RasterPass>(node.kind)) {
+          throw Error(fmt::format("pass '{}': the shader's block '{}' is of passes that draw", node.name, name));
+        }
         node.bound.blocks.push_back({target, i, name == "DrawRecords" ? node.bufferReads.front() : nullptr});
         continue;
       }
@@ -199,7 +254,7 @@ class GraphDeclaration final : public GraphBuilder {
       } else {
         throw Error(fmt::format("pass '{}': nothing is given for the shader's block '{}'", node.name, name));
       }
-      const auto& resource = s_.buffers.at(static_cast<std::size_t>(buffer.id));
+      const auto& resource = s_.buffers[checked(buffer, node.name)];
       node.bufferReads.push_back(resource);
       node.bound.blocks.push_back({target, i, resource});
     }
@@ -219,23 +274,28 @@ Graph::Graph(std::string name, glm::ivec2 outputSize, gl::ShaderSources sources)
 
 Graph::~Graph() = default;
 
-GraphBuilder& Graph::builder() { return *state_->builder; }
+GraphBuilder& Graph::builder() {
+  return *state_->builder;
+}
 
 void Graph::compile(std::span<const Texture> outputs) {
   State& s = *state_;
+  if (s.compiled) throw Error("graph '" + s.name + "' is compiled already");
   // Backwards from the outputs: a pass is kept if something kept reads what it writes.
   std::vector<const void*> wanted;
   for (const Texture texture : outputs) {
     const auto i = static_cast<std::size_t>(texture.id);
     if (texture.id < 0 || i >= s.textures.size()) throw Error("graph '" + s.name + "': an output was never declared");
-    if (s.writer[i] == -1) throw Error(fmt::format("graph '{}': nothing writes its output '{}'", s.name, s.textures[i]->name));
+    if (s.writer[i] == kNoWriter)
+      throw Error(fmt::format("graph '{}': nothing writes its output '{}'", s.name, s.textures[i]->name));
     wanted.push_back(s.textures[i].get());
   }
   const auto isWanted = [&](const void* resource) { return std::find(wanted.begin(), wanted.end(), resource) != wanted.end(); };
   for (auto node = s.passes.rbegin(); node != s.passes.rend(); ++node) {
-    node->kept = std::any_of(node->writes.begin(), node->writes.end(),
-                             [&](Texture t) { return isWanted(s.textures[static_cast<std::size_t>(t.id)].get()); }) ||
-                 std::any_of(node->bufferWrites.begin(), node->bufferWrites.end(), [&](const auto& b) { return isWanted(b.get()); });
+    node->kept =
+        std::any_of(node->writes.begin(), node->writes.end(),
+                    [&](Texture t) { return isWanted(s.textures[static_cast<std::size_t>(t.id)].get()); }) ||
+        std::any_of(node->bufferWrites.begin(), node->bufferWrites.end(), [&](const auto& b) { return isWanted(b.get()); });
     if (!node->kept) continue;
     for (const auto& read : node->textureReads) wanted.push_back(read.get());
     for (const auto& read : node->bufferReads) wanted.push_back(read.get());
@@ -245,7 +305,8 @@ void Graph::compile(std::span<const Texture> outputs) {
     if (!node.kept) continue;
     for (const Texture texture : node.writes) {
       TextureResource& resource = *s.textures[static_cast<std::size_t>(texture.id)];
-      resource.object = gl::makeTexture2D(formatFacts(resource.info.format).internalFormat, resource.info.size, s.name + "/" + resource.name);
+      resource.object =
+          gl::makeTexture2D(formatFacts(resource.info.format).internalFormat, resource.info.size, s.name + "/" + resource.name);
     }
     if (std::holds_alternative<CpuPass>(node.kind)) continue;
     node.framebuffer = gl::makeFramebuffer(s.name + "/" + node.name);
@@ -255,7 +316,7 @@ void Graph::compile(std::span<const Texture> outputs) {
       const bool depth = formatFacts(resource.info.format).depth;
       const GLenum attachment = resource.info.format == Format::d32f_s8 ? GL_DEPTH_STENCIL_ATTACHMENT
                                 : depth                                 ? GL_DEPTH_ATTACHMENT
-                                                                        : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(draws.size());
+                                        : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(draws.size());
       glNamedFramebufferTexture(node.framebuffer.name(), attachment, resource.object.name(), 0);
       if (!depth) draws.push_back(attachment);
     }
@@ -269,16 +330,25 @@ void Graph::compile(std::span<const Texture> outputs) {
   s.compiled = true;
 }
 
-const Facts& Graph::facts() const { return state_->facts; }
+const Facts& Graph::facts() const {
+  return state_->facts;
+}
 
-std::shared_ptr<TextureResource> Graph::resource(Texture texture) const { return state_->textures.at(static_cast<std::size_t>(texture.id)); }
-std::shared_ptr<BufferResource> Graph::resource(Buffer buffer) const { return state_->buffers.at(static_cast<std::size_t>(buffer.id)); }
+std::shared_ptr<TextureResource> Graph::resource(Texture texture) const {
+  if (texture.id < 0 || static_cast<std::size_t>(texture.id) >= state_->textures.size()) {
+    throw Error("graph '" + state_->name + "': a texture was never declared");
+  }
+  return state_->textures[static_cast<std::size_t>(texture.id)];
+}
+std::shared_ptr<BufferResource> Graph::resource(Buffer buffer) const {
+  return state_->buffers.at(static_cast<std::size_t>(buffer.id));
+}
 
 std::size_t Graph::memoryBytes() const {
   std::size_t total = 0;
   for (std::size_t i = 0; i < state_->textures.size(); ++i) {
     const TextureResource& t = *state_->textures[i];
-    if (state_->writer[i] == -2 || !t.object) continue;
+    if (state_->writer[i] == kImported || !t.object) continue;
     total += static_cast<std::size_t>(t.info.size.x) * static_cast<std::size_t>(t.info.size.y) *
              static_cast<std::size_t>(formatFacts(t.info.format).bytes);
   }
@@ -305,7 +375,7 @@ bool Graph::hasCpuPasses() const {
 std::vector<std::string> Graph::textureNames() const {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < state_->textures.size(); ++i) {
-    if (state_->writer[i] != -2 && state_->textures[i]->object) names.push_back(state_->textures[i]->name);
+    if (state_->writer[i] != kImported && state_->textures[i]->object) names.push_back(state_->textures[i]->name);
   }
   return names;
 }

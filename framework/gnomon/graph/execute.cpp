@@ -1,12 +1,13 @@
 // Execution: what changed is run, the rest is skipped; every pass sets all the state it needs.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "gnomon/base/clock.h"
 #include "gnomon/base/error.h"
 #include "gnomon/graph/state.h"
-#include "gnomon/base/clock.h"
 
 namespace gnomon {
 
@@ -23,7 +24,9 @@ void writeBuffer(BufferResource& buffer, std::span<const std::byte> bytes) {
   ++buffer.revision;
 }
 
-std::uint64_t texels(glm::ivec2 size) { return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y); }
+std::uint64_t texels(glm::ivec2 size) {
+  return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+}
 
 GLenum channelLayout(const FormatFacts& facts) {
   if (facts.depth) return GL_DEPTH_COMPONENT;
@@ -33,8 +36,21 @@ GLenum channelLayout(const FormatFacts& facts) {
 void readInto(const TextureResource& texture, std::vector<float>& out) {
   const FormatFacts& facts = formatFacts(texture.info.format);
   out.resize(texels(texture.info.size) * static_cast<std::size_t>(facts.channels));
-  glGetTextureImage(texture.object.name(), 0, channelLayout(facts), GL_FLOAT, static_cast<GLsizei>(out.size() * sizeof(float)), out.data());
+  glGetTextureImage(texture.object.name(), 0, channelLayout(facts), GL_FLOAT, static_cast<GLsizei>(out.size() * sizeof(float)),
+                    out.data());
 }
+
+/// What a pass draws, under its name, for debuggers. Ends however the pass ends.
+class DebugGroup {
+ public:
+  explicit DebugGroup(const std::string& name) {
+    glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, static_cast<GLsizei>(std::min<std::size_t>(name.size(), 255)),
+                     name.c_str());
+  }
+  ~DebugGroup() { glPopDebugGroup(); }
+  DebugGroup(const DebugGroup&) = delete;
+  DebugGroup& operator=(const DebugGroup&) = delete;
+};
 
 class Uniforms final : public UniformWriter {
  public:
@@ -65,28 +81,33 @@ class GraphExecution final : public CpuContext {
   // --- CpuContext ---
   const FrameInputs& frame() const override { return frame_; }
   std::span<const float> read(Texture texture) override {
-    std::vector<float>& values = floats_.emplace_back();
-    readInto(declaredRead(texture), values);
+    const TextureResource& resource = declaredRead(texture);
+    if (s_.floatsUsed == s_.floats.size()) s_.floats.emplace_back();
+    std::vector<float>& values = s_.floats[s_.floatsUsed++];
+    readInto(resource, values);
     return values;
   }
   std::span<const std::uint32_t> readIntegers(Texture texture) override {
     const TextureResource& resource = declaredRead(texture);
-    std::vector<std::uint32_t>& values = integers_.emplace_back();
+    if (s_.integersUsed == s_.integers.size()) s_.integers.emplace_back();
+    std::vector<std::uint32_t>& values = s_.integers[s_.integersUsed++];
     values.resize(texels(resource.info.size) * 2);
-    glGetTextureImage(resource.object.name(), 0, GL_RG_INTEGER, GL_UNSIGNED_INT, static_cast<GLsizei>(values.size() * 4), values.data());
+    glGetTextureImage(resource.object.name(), 0, GL_RG_INTEGER, GL_UNSIGNED_INT, static_cast<GLsizei>(values.size() * 4),
+                      values.data());
     return values;
   }
   void write(Texture texture, std::span<const float> values) override {
     bool declared = false;
     for (const Texture t : node_->writes) declared = declared || t == texture;
-    if (!declared) throw Error("it writes a texture that it did not declare");
     TextureResource& resource = *s_.textures.at(static_cast<std::size_t>(texture.id));
+    if (!declared) throw Error(fmt::format("it writes texture '{}', which it did not declare", resource.name));
     const FormatFacts& facts = formatFacts(resource.info.format);
     if (values.size() != texels(resource.info.size) * static_cast<std::size_t>(facts.channels)) {
       throw Error(fmt::format("texture '{}' has {} values, {} were written", resource.name,
                               texels(resource.info.size) * static_cast<std::size_t>(facts.channels), values.size()));
     }
-    glTextureSubImage2D(resource.object.name(), 0, 0, 0, resource.info.size.x, resource.info.size.y, channelLayout(facts), GL_FLOAT, values.data());
+    glTextureSubImage2D(resource.object.name(), 0, 0, 0, resource.info.size.x, resource.info.size.y, channelLayout(facts),
+                        GL_FLOAT, values.data());
   }
   void write(Buffer buffer, std::span<const std::byte> bytes) override {
     BufferResource& resource = *s_.buffers.at(static_cast<std::size_t>(buffer.id));
@@ -123,7 +144,8 @@ class GraphExecution final : public CpuContext {
     const std::size_t bytes = state.scratchRecords.size() * sizeof(DrawRecord);
     const std::span<const std::byte> content(reinterpret_cast<const std::byte*>(state.scratchRecords.data()), bytes);
     BufferResource& records = *state.records;
-    const bool same = content.size() == records.contents.size() && std::memcmp(content.data(), records.contents.data(), bytes) == 0;
+    const bool same =
+        content.size() == records.contents.size() && std::memcmp(content.data(), records.contents.data(), bytes) == 0;
     if (same && records.object) return;
     if (bytes > records.bytes || !records.object) {
       records.bytes = std::max<std::size_t>(bytes, records.bytes * 2);
@@ -136,7 +158,8 @@ class GraphExecution final : public CpuContext {
       state.commandBuffer = gl::makeBuffer(state.commandCapacity * sizeof(DrawCommand), nullptr, state.name + " commands");
     }
     if (!state.commands.empty()) {
-      glNamedBufferSubData(state.commandBuffer.name(), 0, static_cast<GLsizeiptr>(state.commands.size() * sizeof(DrawCommand)), state.commands.data());
+      glNamedBufferSubData(state.commandBuffer.name(), 0, static_cast<GLsizeiptr>(state.commands.size() * sizeof(DrawCommand)),
+                           state.commands.data());
     }
     ++records.revision;
   }
@@ -170,16 +193,18 @@ class GraphExecution final : public CpuContext {
       node_ = &node;
       const double cpu = options_.timePasses ? processCpuMs() : 0.0;
       const double wall = options_.timePasses ? wallMs() : 0.0;
-      glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, node.name.c_str());
       try {
+        const DebugGroup group(node.name);
         std::visit([&](const auto& kind) { perform(node, kind); }, node.kind);
-        if (options_.messages != nullptr) options_.messages->throwIfError("after it");
+        if (options_.messages != nullptr) options_.messages->throwIfError("while it ran");
+        if (options_.checkFinite) checkFinite(node);
       } catch (const std::exception& error) {
-        glPopDebugGroup();
         node.everRan = false;
         throw Error(fmt::format("pass '{}': {}", node.name, error.what()));
+      } catch (...) {
+        node.everRan = false;
+        throw Error(fmt::format("pass '{}': it threw something that is no std::exception", node.name));
       }
-      glPopDebugGroup();
       for (const Texture written : node.writes) ++s_.textures[static_cast<std::size_t>(written.id)]->revision;
       remember(node);
       if (options_.timePasses) {
@@ -189,7 +214,6 @@ class GraphExecution final : public CpuContext {
       }
       pass.ran = true;
       ++report_.counters.passesRun;
-      if (options_.checkFinite) checkFinite(node);
     } else {
       ++report_.counters.passesSkipped;
     }
@@ -200,12 +224,12 @@ class GraphExecution final : public CpuContext {
     glBindFramebuffer(GL_FRAMEBUFFER, node.framebuffer.name());
     glViewport(0, 0, node.size.x, node.size.y);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_STENCIL_TEST);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
-    glDisable(GL_POLYGON_OFFSET_FILL);
-    glDisable(GL_FRAMEBUFFER_SRGB);
+    glDepthRangef(0.0f, 1.0f);
+    for (const GLenum off :
+         {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_CULL_FACE, GL_BLEND, GL_COLOR_LOGIC_OP, GL_POLYGON_OFFSET_FILL,
+          GL_FRAMEBUFFER_SRGB, GL_RASTERIZER_DISCARD, GL_SAMPLE_MASK, GL_SAMPLE_ALPHA_TO_COVERAGE}) {
+      glDisable(off);
+    }
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glUseProgram(node.bound.program.name());
@@ -272,8 +296,8 @@ class GraphExecution final : public CpuContext {
   }
 
   void perform(const PassNode& node, const CpuPass& pass) {
-    floats_.clear();
-    integers_.clear();
+    s_.floatsUsed = 0;
+    s_.integersUsed = 0;
     pass.run(*this);
     for (const Texture texture : node.writes) {
       report_.counters.texelsWritten += texels(s_.textures[static_cast<std::size_t>(texture.id)]->info.size);
@@ -290,8 +314,8 @@ class GraphExecution final : public CpuContext {
         if (std::isfinite(s_.readScratch[i])) continue;
         const std::size_t pixel = i / channels;
         const auto width = static_cast<std::size_t>(resource.info.size.x);
-        throw Error(fmt::format("pass '{}': target '{}' holds {} at pixel ({}, {}), channel {}", node.name, resource.name,
-                                s_.readScratch[i], pixel % width, pixel / width, i % channels));
+        throw Error(fmt::format("target '{}' holds {} at pixel ({}, {}), channel {}", resource.name, s_.readScratch[i],
+                                pixel % width, pixel / width, i % channels));
       }
     }
   }
@@ -302,8 +326,6 @@ class GraphExecution final : public CpuContext {
   const GraphRun& options_;
   PassNode* node_ = nullptr;
   GraphReport report_;
-  std::deque<std::vector<float>> floats_;
-  std::deque<std::vector<std::uint32_t>> integers_;
 };
 
 GraphReport Graph::run(const FrameInputs& frame, Revisions revisions, const GraphRun& options) {
@@ -324,6 +346,8 @@ Image readTexture(const TextureResource& texture) {
   return image;
 }
 
-Image Graph::read(Texture texture) const { return readTexture(*resource(texture)); }
+Image Graph::read(Texture texture) const {
+  return readTexture(*resource(texture));
+}
 
 }  // namespace gnomon

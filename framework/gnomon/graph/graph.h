@@ -33,7 +33,7 @@ struct BufferResource {
 struct PassReport {
   std::string name;
   bool ran = false;
-  double cpuMs = 0.0;   ///< process CPU time with a finish after the pass; only where asked for
+  double cpuMs = 0.0;  ///< process CPU time with a finish after the pass; only where asked for
   double wallMs = 0.0;
 };
 
@@ -43,9 +43,9 @@ struct GraphReport {
 };
 
 struct GraphRun {
-  bool skipUnchanged = true;  ///< the plan's rule `skipping`
-  bool timePasses = false;    ///< finish and time after each pass
-  bool checkFinite = false;   ///< throw at the first non-finite texel of a target
+  bool skipUnchanged = true;              ///< the plan's rule `skipping`
+  bool timePasses = false;                ///< finish and time after each pass
+  bool checkFinite = false;               ///< throw at the first non-finite texel of a target
   gl::DebugMessages* messages = nullptr;  ///< where the driver's errors are looked up after each pass
 };
 

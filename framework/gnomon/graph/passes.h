@@ -37,8 +37,8 @@ struct FullscreenPass {
   std::vector<NamedBuffer> buffers = {};
   std::vector<Constant> constants = {};
   Format format = Format::r32f;
-  std::optional<glm::ivec2> size = {};      ///< the output's size when not given
-  std::optional<glm::vec4> clear = {};      ///< what pixels hold that the shader discards
+  std::optional<glm::ivec2> size = {};  ///< the output's size when not given
+  std::optional<glm::vec4> clear = {};  ///< what pixels hold that the shader discards
 };
 
 /// Scene geometry into colour and depth targets. Depth is reversed: cleared to 0, nearer is greater.
@@ -49,7 +49,7 @@ struct RasterPass {
   std::vector<Texture> colours = {};
   std::vector<glm::vec4> clears = {};  ///< per colour target
   std::optional<Texture> depth = {};
-  bool depthClamp = false;        ///< what lies nearer than near keeps near's depth and is not clipped
+  bool depthClamp = false;  ///< what lies nearer than near keeps near's depth and is not clipped
   std::vector<NamedTexture> reads = {};
   std::vector<NamedBuffer> buffers = {};
   std::vector<Constant> constants = {};
@@ -62,9 +62,9 @@ struct CpuPass {
   InputSet inputs = {};
   std::vector<Texture> reads = {};
   std::vector<Texture> writes = {};
-  std::vector<Buffer> after = {};      ///< runs after, and whenever, these change
-  std::vector<Buffer> buffers = {};    ///< written
-  std::vector<DrawList> draws = {};    ///< written
+  std::vector<Buffer> after = {};    ///< runs after, and whenever, these change
+  std::vector<Buffer> buffers = {};  ///< written
+  std::vector<DrawList> draws = {};  ///< written
   std::function<void(CpuContext&)> run = {};
 };
 

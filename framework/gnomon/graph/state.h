@@ -39,7 +39,7 @@ struct PassNode {
   std::vector<std::shared_ptr<BufferResource>> bufferWrites;
 
   std::variant<FullscreenPass, RasterPass, CpuPass> kind;
-  BoundProgram bound;              ///< of full-screen and raster passes
+  BoundProgram bound;  ///< of full-screen and raster passes
   gl::FramebufferObject framebuffer;
   glm::ivec2 size{0, 0};
 
@@ -49,12 +49,15 @@ struct PassNode {
   std::vector<std::uint64_t> seenRevisions;
 };
 
+inline constexpr int kNoWriter = -1;
+inline constexpr int kImported = -2;  ///< written by another graph
+
 struct Graph::State {
   std::string name;
   glm::ivec2 outputSize;
   gl::ShaderSources sources;
   std::vector<std::shared_ptr<TextureResource>> textures;
-  std::vector<int> writer;     ///< pass that writes the texture, -1: none yet, -2: imported
+  std::vector<int> writer;  ///< index of the pass that writes the texture, or one of the two below
   std::vector<std::shared_ptr<BufferResource>> buffers;
   std::vector<bool> bufferImported;
   std::deque<DrawListState> drawLists;
@@ -68,6 +71,12 @@ struct Graph::State {
   gl::SamplerObject nearest;
   std::unique_ptr<GraphBuilder> builder;
   std::unique_ptr<UniformWriter> uniforms;
+
+  // Memory that frames use again: what cpu passes read back (spans stay while the deque grows), and what is checked.
+  std::deque<std::vector<float>> floats;
+  std::deque<std::vector<std::uint32_t>> integers;
+  std::size_t floatsUsed = 0;
+  std::size_t integersUsed = 0;
   std::vector<float> readScratch;
 };
 

@@ -25,7 +25,9 @@ const FormatFacts& formatFacts(Format format) {
   return kTable[static_cast<std::size_t>(format)];
 }
 
-glm::dvec2 texelFootprint(const Facts& facts, double depth) { return facts.texel * (facts.perspective ? depth : 1.0); }
+glm::dvec2 texelFootprint(const Facts& facts, double depth) {
+  return facts.texel * (facts.perspective ? depth : 1.0);
+}
 
 namespace {
 /// As in shaders/gnomon/depth_map.glsl: a few units in the last place of a float.
@@ -51,9 +53,12 @@ double largestBias(const Facts& facts, double depth, double cosTheta, double toC
   // Off its axis a perspective map views planes obliquely: 1 texel more than the tangent.
   const double steepest = (std::sqrt(1.0 - cosine * cosine) / cosine + 1.0) * widest;
   const double position = kPositionRounding * (toCamera + facts.cameraDistance);
-  const double rounding = position + 2.0 * steepest * (position / std::max(std::min(texel.x, texel.y), 1e-300) +
-                                                       kPositionRounding * std::max(facts.mapSize.x, facts.mapSize.y));
-  return facts.biasConstant * depthQuantum(facts, depth) + std::min(rounding + facts.biasSlope * steepest + facts.biasCurvature * facts.filterRadiusTexels * widest, facts.biasLimit * widest) +
+  const double rounding = position + 2.0 * steepest *
+                                         (position / std::max(std::min(texel.x, texel.y), 1e-300) +
+                                          kPositionRounding * std::max(facts.mapSize.x, facts.mapSize.y));
+  return facts.biasConstant * depthQuantum(facts, depth) +
+         std::min(rounding + facts.biasSlope * steepest + facts.biasCurvature * facts.filterRadiusTexels * widest,
+                  facts.biasLimit * widest) +
          facts.biasNormal * widest;
 }
 

@@ -99,23 +99,23 @@ struct FrameCounters {
 /// What a technique claims of its own precision, from which bounds on its error are derived (stability suite, docs).
 /// Filled by the shared passes: the static part at set-up, near and far each time the map is fitted.
 struct Facts {
-  bool readsMap = false;         ///< the rest of the map's figures hold
-  bool perspective = true;       ///< texel extents grow with depth
-  glm::dvec2 texel{0.0, 0.0};    ///< a map texel's extent: metres per metre of light depth, or metres (directional)
-  double nearDepth = 0.0;        ///< metres along the light's axis
+  bool readsMap = false;       ///< the rest of the map's figures hold
+  bool perspective = true;     ///< texel extents grow with depth
+  glm::dvec2 texel{0.0, 0.0};  ///< a map texel's extent: metres per metre of light depth, or metres (directional)
+  double nearDepth = 0.0;      ///< metres along the light's axis
   double farDepth = 0.0;
-  double depthStep = 0.0;        ///< quantum of the stored depth: absolute, or relative to it for float formats
+  double depthStep = 0.0;  ///< quantum of the stored depth: absolute, or relative to it for float formats
   bool floatDepth = false;
-  glm::ivec2 mapSize{0, 0};      ///< texels
-  double cameraDistance = 0.0;   ///< from the light, metres: positions reach the map through the camera's coordinates
-  double biasConstant = 0.0;     ///< quanta
-  double biasSlope = 0.0;        ///< depth change across a texel
-  double biasNormal = 0.0;       ///< texels
-  double biasCurvature = 0.0;    ///< texels per texel of filter radius
-  double biasLimit = 0.0;        ///< no slope correction exceeds this many texel footprints
-  bool receiverPlane = false;    ///< taps are compared with the receiver's plane
+  glm::ivec2 mapSize{0, 0};         ///< texels
+  double cameraDistance = 0.0;      ///< from the light, metres: positions reach the map through the camera's coordinates
+  double biasConstant = 0.0;        ///< quanta
+  double biasSlope = 0.0;           ///< depth change across a texel
+  double biasNormal = 0.0;          ///< texels
+  double biasCurvature = 0.0;       ///< texels per texel of filter radius
+  double biasLimit = 0.0;           ///< no slope correction exceeds this many texel footprints
+  bool receiverPlane = false;       ///< taps are compared with the receiver's plane
   double filterRadiusTexels = 0.0;  ///< farthest tap from the receiver, Chebyshev
-  int samples = 1;               ///< of the source
+  int samples = 1;                  ///< of the source
 };
 
 /// Extent of a map texel at light depth `depth`, metres.

@@ -57,7 +57,7 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
         if (static_cast<int>(mine % static_cast<std::size_t>(options.shards)) != options.shard) continue;
         const std::string name = label(run, job);
         const auto found = earlier.find(jobKey(run, light, job.technique));
-        if (found != earlier.end() && found->second.status == JobStatus::ok) {
+        if (found != earlier.end() && found->second.status == JobStatus::ok && (!options.measureTime || found->second.time)) {
           ++summary.kept;
           summary.records.push_back(found->second);
           progress(mine + 1, total, name, &summary.records.back());

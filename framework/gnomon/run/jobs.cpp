@@ -17,6 +17,8 @@ std::vector<JobRequest> expandEntry(const TechniqueChoice& choice) {
   std::vector<JobRequest> jobs = {first};
   if (!choice.sweep) return jobs;
   for (const auto& [name, values] : choice.sweep->items()) {
+    // The reader has said what is wrong with these; the rest is still worth checking.
+    if (!values.is_array() || values.empty() || values.size() > kMostSweepCombinations / jobs.size()) continue;
     std::vector<JobRequest> next;
     for (const JobRequest& job : jobs) {
       for (std::size_t i = 0; i < values.size(); ++i) {

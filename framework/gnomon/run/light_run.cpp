@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <fstream>
@@ -244,10 +245,11 @@ JobRecord LightRun::run(const ResolvedTechnique& technique) {
 
 std::string jobKey(const ResolvedRun& run, std::size_t light, const ResolvedTechnique& technique) {
   const std::string decides = fmt::format(
-      "{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {}", contentHash(run.scene), writeObject(*lightTable(), &run.lights[light]).dump(),
+      "{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {} {} {}", contentHash(run.scene), writeObject(*lightTable(), &run.lights[light]).dump(),
       writeObject(*cameraTable(), &run.camera).dump(), run.config.output.size.x, run.config.output.size.y, technique.name(),
       technique.parametersJson().dump(), run.reference.name(), run.reference.parametersJson().dump(), run.baseline.name(),
-      run.baseline.parametersJson().dump(), writeObject(*planOverridesTable(), &run.config.plan).dump(), run.config.measure.frames);
+      run.baseline.parametersJson().dump(), writeObject(*planOverridesTable(), &run.config.plan).dump(), run.config.measure.frames, run.config.measure.blocks,
+      fmt::join(run.config.measure.regimes, " "));
   return technique.name() + "-" + hashHex(decides).substr(0, 16);
 }
 

@@ -71,7 +71,13 @@ Scene loadScene(const SceneChoice& choice, const Location& where) {
     if (builtin == nullptr) throw InputError({{where.file, where.pointer + "/builtin", "no built-in scene is named '" + choice.builtin + "'"}});
     scene = builtin->make(choice.parameters);
   } else {
-    scene = loadGltf(choice.file);
+    try {
+      scene = loadGltf(choice.file);
+    } catch (const InputError&) {
+      throw;
+    } catch (const Error& error) {
+      throw InputError({{where.file, where.pointer + "/file", error.what()}});
+    }
   }
   if (choice.cast) flagNamed(scene, *choice.cast, &Instance::casts, where.child("cast"));
   if (choice.receive) flagNamed(scene, *choice.receive, &Instance::receives, where.child("receive"));
@@ -85,20 +91,19 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
   run.config = config;
   const std::string file = config.path.string();
   const SceneChoice& choice = config.scenes[index];
-  if (choice.builtin.empty() && choice.file.empty()) return run;  // said already
   const std::string scenePointer = config.scenes.size() == 1 ? "/scene" : fmt::format("/scene/{}", index);
+  // A scene that cannot be had must not hide what is wrong with the techniques.
+  bool loaded = false;
   try {
-    run.scene = loadScene(choice, {file, scenePointer});
+    loaded = !choice.builtin.empty() || !choice.file.empty();  // else said already
+    if (loaded) run.scene = loadScene(choice, {file, scenePointer});
   } catch (const InputError& error) {
+    loaded = false;
     for (const Problem& p : error.problems()) problems.add(p.file.empty() ? file : p.file, p.pointer, p.message);
-    return run;
-  } catch (const Error& error) {
-    problems.add(file, scenePointer, error.what());
-    return run;
   }
   run.sceneName = choice.builtin.empty() ? choice.file.filename().string() : choice.builtin;
   run.lights = config.lights.value_or(run.scene.lights);
-  if (run.lights.empty()) {
+  if (loaded && run.lights.empty()) {
     problems.add(file, "/lights", fmt::format("the config names no light and {} has none; add \"lights\": [{{\"type\": \"spot\", ...}}]", run.sceneName));
   }
   run.camera = config.camera.value_or(run.scene.camera.value_or(Camera{}));
@@ -122,7 +127,7 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
   }
   run.baseline = withRole(TechniqueRole::floor, config.baseline, "baseline");
 
-  for (const JobRequest& request : expandJobs(config, run.lights.size())) {
+  for (const JobRequest& request : expandJobs(config, std::max<std::size_t>(run.lights.size(), 1))) {
     Problems found;
     ResolvedTechnique technique = resolveTechnique(registry, request.technique, *request.parameters, request.where, config.techniques[request.entry].where, found);
     problems.append(atTheirPlaces(found, request));
@@ -135,7 +140,8 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
 
 std::vector<ResolvedRun> resolveRuns(const std::filesystem::path& path, Registry& registry, Problems& problems) {
   Problems found;
-  const RunConfig config = readRunConfig(path, found);
+  RunConfig config = readRunConfig(path, found);
+  if (config.scenes.empty() && !found.empty()) config.scenes.emplace_back();  // said already; techniques are checked all the same
   std::vector<ResolvedRun> runs;
   for (std::size_t i = 0; i < config.scenes.size(); ++i) runs.push_back(resolveScene(config, i, registry, found));
   problems.append(found.unique());  // a wrong parameter is found for every scene, light and value of a sweep

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSameDirection = 0.99;  // cosine of 8 degrees
 constexpr double kNegligibleArea = 1e-6;
+constexpr double kSameCorner = 1e-12;     // relative to a polygon's size
 constexpr std::size_t kMostPieces = 512;  // of an uncovered rest: beyond, it is said to be uncovered
 
 /// Ericson, Real-Time Collision Detection, 5.1.5: by the Voronoi regions of corners, edges and the inside.
@@ -52,8 +53,12 @@ double doubleArea(const Polygon& polygon) {
 
 /// `piece` without the convex, counter-clockwise `hole`: convex pieces, one beyond each edge.
 void subtract(Polygon piece, const Polygon& hole, double negligible, std::vector<Polygon>& rest) {
+  double shortest = 0.0;
+  for (const glm::dvec3& p : hole)
+    shortest = std::max(shortest, glm::dot(p - hole[0], p - hole[0]) * kSameCorner * kSameCorner);
   for (std::size_t i = 0; i < hole.size(); ++i) {
     const glm::dvec3 edge = hole[(i + 1) % hole.size()] - hole[i];
+    if (glm::dot(edge, edge) <= shortest) continue;  // a corner twice has no direction
     const glm::dvec3 inward(-edge.y, edge.x, 0.0);
     const HalfSpace inside{inward, -glm::dot(inward, hole[i])};
     Polygon beyond = piece;
@@ -74,7 +79,8 @@ std::vector<Face> worldFaces(const Scene& scene) {
       const Triangle triangle = worldTriangle(scene, instance, t);
       const glm::dvec3 n = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
       const double length = glm::length(n);
-      faces.push_back({triangle.a, triangle.b, triangle.c, length > 0.0 ? n / length : glm::dvec3(0.0), instance.casts, instance.receives});
+      faces.push_back(
+          {triangle.a, triangle.b, triangle.c, length > 0.0 ? n / length : glm::dvec3(0.0), instance.casts, instance.receives});
     }
   }
   return faces;

@@ -20,6 +20,10 @@ bool readAt(const std::string& bytes, std::size_t offset, T& out) {
   return true;
 }
 
+bool inside(const std::string& bytes, std::size_t offset, std::size_t size) {
+  return offset <= bytes.size() && size <= bytes.size() - offset;
+}
+
 constexpr std::size_t padded(std::size_t bytes) { return (bytes + 3) & ~std::size_t{3}; }
 
 /// Walks the notes of one segment for ours.
@@ -49,14 +53,17 @@ std::string pluginAbiTag(const std::filesystem::path& library) {
       header.e_type != ET_DYN) {
     throw Error(library.string() + " is not a 64-bit ELF shared object");
   }
+  // The loader maps segments without asking whether the file reaches that far: touching what was cut off ends the process.
+  const auto cutShort = [&] { return Error(library.string() + " is cut short"); };
+  if (!inside(bytes, header.e_shoff, std::size_t{header.e_shnum} * header.e_shentsize)) throw cutShort();
+  std::string tag;
   for (std::size_t i = 0; i < header.e_phnum; ++i) {
     Elf64_Phdr segment{};
-    if (!readAt(bytes, header.e_phoff + i * header.e_phentsize, segment)) break;
-    if (segment.p_type != PT_NOTE || segment.p_offset > bytes.size() || segment.p_filesz > bytes.size() - segment.p_offset) continue;
-    std::string tag = tagInNotes(bytes, segment.p_offset, segment.p_filesz);
-    if (!tag.empty()) return tag;
+    if (!readAt(bytes, header.e_phoff + i * header.e_phentsize, segment)) throw cutShort();
+    if (!inside(bytes, segment.p_offset, segment.p_filesz)) throw cutShort();
+    if (segment.p_type == PT_NOTE && tag.empty()) tag = tagInNotes(bytes, segment.p_offset, segment.p_filesz);
   }
-  return {};
+  return tag;
 }
 
 std::string frameworkAbiTag() { return GNOMON_ABI_TAG; }

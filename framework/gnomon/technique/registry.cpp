@@ -119,7 +119,12 @@ OpenTechnique Registry::open(const std::string& name) {
   const auto fail = [&](const std::string& message) { throw InputError({{registered->file.string(), "/library", message}}); };
   std::unique_ptr<Library>& library = libraries_[path];
   if (!library) {
-    const std::string tag = pluginAbiTag(path);
+    std::string tag;
+    try {
+      tag = pluginAbiTag(path);
+    } catch (const Error& error) {
+      fail(error.what());
+    }
     if (tag != frameworkAbiTag()) {
       fail(fmt::format("{} was built for another framework: its tag is '{}', this one's is '{}'; rebuild it. None of its code was run",
                        path.filename().string(), tag.empty() ? "none" : tag, frameworkAbiTag()));

@@ -61,7 +61,7 @@ class Registry {
 };
 
 /// The ABI tag in the ELF note of a plugin, read from the file; empty when it has none. Throws Error for a file that is no
-/// 64-bit ELF shared object.
+/// 64-bit ELF shared object, or is cut short.
 std::string pluginAbiTag(const std::filesystem::path& library);
 /// The tag that this framework accepts.
 std::string frameworkAbiTag();

@@ -78,5 +78,8 @@ float isLit(sampler2D map, Receiver r, vec2 uv) {
   float depth = r.depth;
   // The texel holds the depth at its centre: compare with the receiver's plane there.
   if (BIAS_RECEIVER_PLANE) depth += clamp(dot(r.slope, centre - r.uv * mapTexel.zw), -r.limit, r.limit);
-  return depth + r.bias >= textureLod(map, centre * mapTexel.xy, 0.0).r ? 1.0 : 0.0;
+  depth += r.bias;
+  // Beside a receiver's border its plane may be beyond far, where the map holds nothing: that is 0, and no blocker.
+  if (GNOMON_DEFENCE(plane_beyond_far)) depth = max(depth, 0.0);
+  return depth >= textureLod(map, centre * mapTexel.xy, 0.0).r ? 1.0 : 0.0;
 }
