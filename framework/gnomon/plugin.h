@@ -6,9 +6,9 @@
 #include "gnomon/technique/plugin_note.h"
 
 /// Exports the plugin's entries, and the ABI tag in an ELF note that the loader reads before any code of the plugin runs.
-#define GNOMON_PLUGIN(...)                                                                                                   \
-  GNOMON_PLUGIN_NOTE                                                                                                         \
-  extern "C" __attribute__((visibility("default"))) const gnomon::PluginEntries* gnomon_plugin() {                           \
-    static const gnomon::PluginEntries entries{{__VA_ARGS__}};                                                               \
-    return &entries;                                                                                                         \
+#define GNOMON_PLUGIN(...)                                                                         \
+  GNOMON_PLUGIN_NOTE                                                                               \
+  extern "C" __attribute__((visibility("default"))) const gnomon::PluginEntries* gnomon_plugin() { \
+    static const gnomon::PluginEntries entries{{__VA_ARGS__}};                                     \
+    return &entries;                                                                               \
   }

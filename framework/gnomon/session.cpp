@@ -10,13 +10,16 @@ namespace gnomon {
 
 namespace {
 
-gl::ShaderSources frameworkShaders() { return {{installationDirectory() / "shaders"}, {}}; }
+gl::ShaderSources frameworkShaders() {
+  return {{installationDirectory() / "shaders"}, {}};
+}
 
 /// One plan that holds at every pose: what any of them calls for is on.
 EffectPlan planForAll(const SessionSetup& setup, const SceneSurvey& nominal) {
   EffectPlan plan = planEffects(nominal, setup.light, setup.camera, setup.overrides);
   for (const Light& pose : setup.lightPoses) {
-    const EffectPlan other = planEffects(survey(setup.scene, pose, setup.camera, setup.outputSize), pose, setup.camera, setup.overrides);
+    const EffectPlan other =
+        planEffects(survey(setup.scene, pose, setup.camera, setup.outputSize), pose, setup.camera, setup.overrides);
     for (std::size_t i = 0; i < plan.decisions.size(); ++i) {
       if (other.decisions[i].on && !plan.decisions[i].on) plan.decisions[i] = other.decisions[i];
     }
@@ -28,7 +31,7 @@ struct SlotState {
   std::string name;
   std::unique_ptr<Technique> technique;
   Support support;
-  std::unique_ptr<Graph> graph;    ///< null when refused, or when no receiver faces the light
+  std::unique_ptr<Graph> graph;  ///< null when refused, or when no receiver faces the light
   Outputs outputs;
   std::unique_ptr<Graph> shading;
   Texture shaded;
@@ -68,7 +71,9 @@ struct Session::State {
     messages.throwIfError("session set-up");
   }
 
-  FrameInputs inputs() const { return {setup.scene, survey.instanceBounds, gpu, setup.light, setup.camera, setup.outputSize, 0.0}; }
+  FrameInputs inputs() const {
+    return {setup.scene, survey.instanceBounds, gpu, setup.light, setup.camera, setup.outputSize, 0.0};
+  }
 
   GraphReport run(Graph& graph, const GraphRun& options) {
     GraphRun all = options;
@@ -86,7 +91,8 @@ struct Session::State {
     const GBuffer& g = passes.gbuffer;
     graph.provide("View", graph.import("View", shared.resource(passes.view)));
     graph.provide("LightView", graph.import("LightView", shared.resource(passes.lightView)));
-    return {bring("gPosition", g.position), bring("gNormal", g.normal), bring("gIds", g.ids), bring("gDepth", g.depth), bring("gMask", g.mask)};
+    return {bring("gPosition", g.position), bring("gNormal", g.normal), bring("gIds", g.ids), bring("gDepth", g.depth),
+            bring("gMask", g.mask)};
   }
 
   void setUpTechnique(SlotState& slot, const OpenTechnique& technique, const void* parameters) {
@@ -114,8 +120,8 @@ struct Session::State {
     slot.visibility = slot.graph->resource(slot.outputs.visibility);
     const TextureInfo& info = slot.visibility->info;
     if (info.size != setup.outputSize || (info.format != Format::r16f && info.format != Format::r32f)) {
-      throw Error(fmt::format("its visibility is {}x{} {}; it must be r16f or r32f of the output's size, {}x{}", info.size.x, info.size.y,
-                              formatFacts(info.format).name, setup.outputSize.x, setup.outputSize.y));
+      throw Error(fmt::format("its visibility is {}x{} {}; it must be r16f or r32f of the output's size, {}x{}", info.size.x,
+                              info.size.y, formatFacts(info.format).name, setup.outputSize.x, setup.outputSize.y));
     }
     std::vector<Texture> outputs{slot.outputs.visibility};
     if (slot.outputs.admissible) outputs.push_back(*slot.outputs.admissible);
@@ -153,12 +159,24 @@ struct Session::State {
 Session::Session(SessionSetup setup) : state_(std::make_unique<State>(std::move(setup))) {}
 Session::~Session() = default;
 
-const Scene& Session::scene() const { return state_->setup.scene; }
-const Light& Session::light() const { return state_->setup.light; }
-const Camera& Session::camera() const { return state_->setup.camera; }
-glm::ivec2 Session::outputSize() const { return state_->setup.outputSize; }
-const SceneSurvey& Session::survey() const { return state_->survey; }
-const EffectPlan& Session::plan() const { return state_->plan; }
+const Scene& Session::scene() const {
+  return state_->setup.scene;
+}
+const Light& Session::light() const {
+  return state_->setup.light;
+}
+const Camera& Session::camera() const {
+  return state_->setup.camera;
+}
+glm::ivec2 Session::outputSize() const {
+  return state_->setup.outputSize;
+}
+const SceneSurvey& Session::survey() const {
+  return state_->survey;
+}
+const EffectPlan& Session::plan() const {
+  return state_->plan;
+}
 
 void Session::moveLight(const Light& light) {
   state_->setup.light = light;
@@ -172,7 +190,8 @@ void Session::moveCamera(const Camera& camera) {
 
 void Session::moveInstances(const std::vector<glm::dmat4>& worlds) {
   std::vector<Instance>& instances = state_->setup.scene.instances;
-  if (worlds.size() != instances.size()) throw Error(fmt::format("{} transforms for {} instances", worlds.size(), instances.size()));
+  if (worlds.size() != instances.size())
+    throw Error(fmt::format("{} transforms for {} instances", worlds.size(), instances.size()));
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     instances[i].world = worlds[i];
     state_->survey.instanceBounds[i] = worldBounds(state_->setup.scene, instances[i]);
@@ -197,18 +216,30 @@ Slot Session::addSlot(const OpenTechnique& technique, const std::shared_ptr<cons
   return {state_->slots.size() - 1};
 }
 
-void Session::removeSlots() { state_->slots.clear(); }
+void Session::removeSlots() {
+  state_->slots.clear();
+}
 
-const Support& Session::support(Slot slot) const { return state_->at(slot).support; }
-Facts Session::facts(Slot slot) const { return state_->at(slot).graph ? state_->at(slot).graph->facts() : Facts{}; }
-std::size_t Session::memoryBytes(Slot slot) const { return state_->at(slot).graph ? state_->at(slot).graph->memoryBytes() : 0; }
+const Support& Session::support(Slot slot) const {
+  return state_->at(slot).support;
+}
+Facts Session::facts(Slot slot) const {
+  return state_->at(slot).graph ? state_->at(slot).graph->facts() : Facts{};
+}
+std::size_t Session::memoryBytes(Slot slot) const {
+  return state_->at(slot).graph ? state_->at(slot).graph->memoryBytes() : 0;
+}
 std::vector<std::string> Session::passNames(Slot slot) const {
   return state_->at(slot).graph ? state_->at(slot).graph->passNames() : std::vector<std::string>{};
 }
 
-bool Session::hasCpuPasses(Slot slot) const { return state_->at(slot).graph && state_->at(slot).graph->hasCpuPasses(); }
+bool Session::hasCpuPasses(Slot slot) const {
+  return state_->at(slot).graph && state_->at(slot).graph->hasCpuPasses();
+}
 
-GraphReport Session::runShared(const GraphRun& options) { return state_->run(state_->shared, options); }
+GraphReport Session::runShared(const GraphRun& options) {
+  return state_->run(state_->shared, options);
+}
 
 GraphReport Session::runTechnique(Slot slot, const GraphRun& options) {
   SlotState& s = state_->at(slot);
@@ -219,7 +250,9 @@ GraphReport Session::runTechnique(Slot slot, const GraphRun& options) {
   });
 }
 
-GraphReport Session::runShading(Slot slot, const GraphRun& options) { return state_->run(*state_->at(slot).shading, options); }
+GraphReport Session::runShading(Slot slot, const GraphRun& options) {
+  return state_->run(*state_->at(slot).shading, options);
+}
 
 FrameReport Session::frame(Slot slot, const GraphRun& options) {
   FrameReport report;
@@ -229,10 +262,20 @@ FrameReport Session::frame(Slot slot, const GraphRun& options) {
   return report;
 }
 
-Image Session::visibility(Slot slot) const { return readTexture(*state_->at(slot).visibility); }
-Image Session::shaded(Slot slot) const { return state_->at(slot).shading->read(state_->at(slot).shaded); }
-Image Session::receiverMask() const { return state_->shared.read(state_->passes.gbuffer.mask); }
-Image Session::positions() const { return state_->shared.read(state_->passes.gbuffer.position); }
-Image Session::normals() const { return state_->shared.read(state_->passes.gbuffer.normal); }
+Image Session::visibility(Slot slot) const {
+  return readTexture(*state_->at(slot).visibility);
+}
+Image Session::shaded(Slot slot) const {
+  return state_->at(slot).shading->read(state_->at(slot).shaded);
+}
+Image Session::receiverMask() const {
+  return state_->shared.read(state_->passes.gbuffer.mask);
+}
+Image Session::positions() const {
+  return state_->shared.read(state_->passes.gbuffer.position);
+}
+Image Session::normals() const {
+  return state_->shared.read(state_->passes.gbuffer.normal);
+}
 
 }  // namespace gnomon

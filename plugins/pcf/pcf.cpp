@@ -20,8 +20,10 @@ struct Parameters {
 
 ParameterTable<Parameters> parameterTable() {
   return {choice("kernel", &Parameters::kernel, {"box"}, Binding::specialise, "where the taps lie and what they weigh"),
-          integer("taps", &Parameters::taps, {.min = 2, .max = 31, .unit = "texels"}, Binding::specialise, "kernel width N, odd or even"),
-          real("spread", &Parameters::spread, {.min = 0.25, .max = 16.0, .unit = "texels"}, Binding::structure, "distance between taps"),
+          integer("taps", &Parameters::taps, {.min = 2, .max = 31, .unit = "texels"}, Binding::specialise,
+                  "kernel width N, odd or even"),
+          real("spread", &Parameters::spread, {.min = 0.25, .max = 16.0, .unit = "texels"}, Binding::structure,
+               "distance between taps"),
           inlined(&Parameters::map, depthMapTable())};
 }
 
@@ -51,6 +53,7 @@ class Pcf final : public Technique {
 }  // namespace
 }  // namespace gnomon
 
-GNOMON_PLUGIN(gnomon::entry<gnomon::Pcf>("pcf", gnomon::parameterTable(),
-                                         {.paper = "Reeves, Salesin, Cook, Rendering antialiased shadows with depth maps, SIGGRAPH 1987",
-                                          .summary = "mean of N x N depth comparisons: penumbrae of one width"}))
+GNOMON_PLUGIN(
+    gnomon::entry<gnomon::Pcf>("pcf", gnomon::parameterTable(),
+                               {.paper = "Reeves, Salesin, Cook, Rendering antialiased shadows with depth maps, SIGGRAPH 1987",
+                                .summary = "mean of N x N depth comparisons: penumbrae of one width"}))

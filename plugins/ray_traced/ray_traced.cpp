@@ -19,8 +19,10 @@ struct Parameters {
 };
 
 ParameterTable<Parameters> parameterTable() {
-  return {integer("samples", &Parameters::samples, {.min = 1, .max = 65536, .unit = "rays"}, Binding::structure, "rays a pixel"),
-          integer("seed", &Parameters::seed, {.min = 0, .max = 2147483647}, Binding::structure, "of the scrambles: other seeds, other noise")};
+  return {
+      integer("samples", &Parameters::samples, {.min = 1, .max = 65536, .unit = "rays"}, Binding::structure, "rays a pixel"),
+      integer("seed", &Parameters::seed, {.min = 0, .max = 2147483647}, Binding::structure,
+              "of the scrambles: other seeds, other noise")};
 }
 
 class RayTraced final : public Technique {
@@ -53,7 +55,8 @@ class RayTraced final : public Technique {
   }
 
  private:
-  static void trace(CpuContext& context, const Tracer& tracer, const GBuffer& g, Texture target, bool penumbra, const Parameters& p) {
+  static void trace(CpuContext& context, const Tracer& tracer, const GBuffer& g, Texture target, bool penumbra,
+                    const Parameters& p) {
     const FrameInputs& frame = context.frame();
     const LightFrame axes = lightFrame(frame.light);
     const auto positions = context.read(g.position);
@@ -70,8 +73,11 @@ class RayTraced final : public Technique {
       for (std::size_t pixel = row * width; pixel < (row + 1) * width; ++pixel) {
         if (mask[pixel] == 0.0f) continue;
         const glm::dvec3 relative(positions[4 * pixel], positions[4 * pixel + 1], positions[4 * pixel + 2]);
-        const Receiver receiver{frame.camera.position + relative, {normals[4 * pixel], normals[4 * pixel + 1], normals[4 * pixel + 2]},
-                                ids[2 * pixel], ids[2 * pixel + 1], glm::length(relative)};
+        const Receiver receiver{frame.camera.position + relative,
+                                {normals[4 * pixel], normals[4 * pixel + 1], normals[4 * pixel + 2]},
+                                ids[2 * pixel],
+                                ids[2 * pixel + 1],
+                                glm::length(relative)};
         batch.start(receiver, visibility[pixel]);
         const SobolOwen2 points(pixelSeed(static_cast<std::uint32_t>(pixel - row * width), static_cast<std::uint32_t>(row),
                                           static_cast<std::uint32_t>(p.seed)));

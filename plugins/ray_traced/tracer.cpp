@@ -12,7 +12,9 @@ namespace gnomon {
 
 namespace {
 
-double largestComponent(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double largestComponent(const glm::dvec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 /// Half a unit in the last place of a float, relative.
 constexpr double kRoundoff = 0.5 * 1.1920929e-7;
@@ -132,8 +134,12 @@ void ShadowRays::flush() {
     rtcOccluded16(valid.data(), tracer_.scene(), &context_.base, &rays_);
   } else {
     for (std::size_t lane = 0; lane < filled_; ++lane) {
-      RTCRay ray{rays_.org_x[lane], rays_.org_y[lane], rays_.org_z[lane], rays_.tnear[lane], rays_.dir_x[lane], rays_.dir_y[lane],
-                 rays_.dir_z[lane], 0.0f, rays_.tfar[lane], ~0U, rays_.id[lane], 0};
+      RTCRay ray{rays_.org_x[lane], rays_.org_y[lane],
+                 rays_.org_z[lane], rays_.tnear[lane],
+                 rays_.dir_x[lane], rays_.dir_y[lane],
+                 rays_.dir_z[lane], 0.0f,
+                 rays_.tfar[lane],  ~0U,
+                 rays_.id[lane],    0};
       rtcOccluded1(tracer_.scene(), &context_.base, &ray);
       rays_.tfar[lane] = ray.tfar;
     }
@@ -149,7 +155,8 @@ void ShadowRays::flush() {
 void ShadowRays::finish() {
   flush();
   for (const Count& count : counts_) {
-    *count.visibility = count.rays == 0 ? 1.0f : static_cast<float>(count.rays - count.blocked) / static_cast<float>(count.rays);
+    *count.visibility =
+        count.rays == 0 ? 1.0f : static_cast<float>(count.rays - count.blocked) / static_cast<float>(count.rays);
   }
   counts_.clear();
 }
@@ -160,7 +167,8 @@ void ShadowRays::rejectOwnTriangle(const RTCFilterFunctionNArguments* arguments)
   for (unsigned i = 0; i < n; ++i) {
     if (arguments->valid[i] == 0) continue;
     const unsigned lane = RTCRayN_id(arguments->ray, n, i);
-    if (RTCHitN_geomID(arguments->hit, n, i) == context->instance[lane] && RTCHitN_primID(arguments->hit, n, i) == context->triangle[lane]) {
+    if (RTCHitN_geomID(arguments->hit, n, i) == context->instance[lane] &&
+        RTCHitN_primID(arguments->hit, n, i) == context->triangle[lane]) {
       arguments->valid[i] = 0;
     }
   }

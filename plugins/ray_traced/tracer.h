@@ -46,10 +46,10 @@ class Tracer {
 };
 
 struct Receiver {
-  glm::dvec3 position;      ///< world
-  glm::dvec3 normal;        ///< geometric, unit
+  glm::dvec3 position;  ///< world
+  glm::dvec3 normal;    ///< geometric, unit
   std::uint32_t instance, triangle;
-  double toCamera;          ///< metres: the position was rounded relative to the camera
+  double toCamera;  ///< metres: the position was rounded relative to the camera
 };
 
 /// Collects the rays of many receivers into packets. One a thread.

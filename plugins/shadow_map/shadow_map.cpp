@@ -18,9 +18,8 @@ class ShadowMap final : public Technique {
 
   Outputs setup(GraphBuilder& graph, const Frame& frame, const EffectPlan& plan) override {
     const LightDepth depth = lightDepth(graph, frame, map_, plan, 0.0);
-    return {.visibility = graph.fullscreen("compare", {.shader = "shadow_map.frag",
-                                                       .reads = {{"depthMap", depth.map}},
-                                                       .clear = glm::vec4(1.0f)})};
+    return {.visibility = graph.fullscreen(
+                "compare", {.shader = "shadow_map.frag", .reads = {{"depthMap", depth.map}}, .clear = glm::vec4(1.0f)})};
   }
 
  private:
@@ -30,6 +29,7 @@ class ShadowMap final : public Technique {
 }  // namespace
 }  // namespace gnomon
 
-GNOMON_PLUGIN(gnomon::entry<gnomon::ShadowMap>("shadow_map", gnomon::depthMapTable(),
-                                               {.paper = "Williams, Casting curved shadows on curved surfaces, SIGGRAPH 1978",
-                                                .summary = "one depth comparison a pixel: hard shadows of the source's centre"}))
+GNOMON_PLUGIN(
+    gnomon::entry<gnomon::ShadowMap>("shadow_map", gnomon::depthMapTable(),
+                                     {.paper = "Williams, Casting curved shadows on curved surfaces, SIGGRAPH 1978",
+                                      .summary = "one depth comparison a pixel: hard shadows of the source's centre"}))

@@ -18,11 +18,13 @@ class Unshadowed final : public Technique {
   }
 
   Outputs setup(GraphBuilder& graph, const Frame& /*frame*/, const EffectPlan& /*plan*/) override {
-    return {.visibility = graph.fullscreen("constant", {.shader = "unshadowed.frag", .format = Format::r16f, .clear = glm::vec4(1.0f)})};
+    return {.visibility =
+                graph.fullscreen("constant", {.shader = "unshadowed.frag", .format = Format::r16f, .clear = glm::vec4(1.0f)})};
   }
 };
 
 }  // namespace
 }  // namespace gnomon
 
-GNOMON_PLUGIN(gnomon::entry<gnomon::Unshadowed, gnomon::Parameters>("unshadowed", {}, {.paper = "", .summary = "V = 1: the floor of every cost"}))
+GNOMON_PLUGIN(gnomon::entry<gnomon::Unshadowed, gnomon::Parameters>("unshadowed", {},
+                                                                    {.paper = "", .summary = "V = 1: the floor of every cost"}))

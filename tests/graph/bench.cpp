@@ -43,6 +43,15 @@ std::vector<std::string> ran(const GraphReport& report) {
   return names;
 }
 
+bool besideAnEdge(const Image& image, int x, int y) {
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (image.at(x + dx, y + dy) != image.at(x, y)) return true;
+    }
+  }
+  return false;
+}
+
 std::string shaderWriting(GraphBuilder& graph, const std::string& expression, const std::string& declarations) {
   const std::string text =
       fmt::format("{}\nout float result;\nvoid main() {{ const ivec2 p = ivec2(gl_FragCoord.xy); result = {}; }}\n",

@@ -38,6 +38,9 @@ class Bench {
 /// Names of the passes that ran.
 std::vector<std::string> ran(const GraphReport& report);
 
+/// Whether one of the eight neighbours of an inner pixel has another value.
+bool besideAnEdge(const Image& image, int x, int y);
+
 /// The message of the Error that `action` throws, or "" if it throws none.
 template <class Action>
 std::string errorOf(const Action& action) {

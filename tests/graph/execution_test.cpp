@@ -337,6 +337,8 @@ TEST_F(Execution, NoStateLeftByOthersChangesAPass) {
   const std::vector<float> before = graph->read(position).data;
   ASSERT_GT(std::count_if(before.begin(), before.end(), [](float v) { return v != 0.0f; }), 8);
 
+  const float rubbish = 42.0f;  // so that drawing nothing shows
+  glClearTexImage(graph->resource(position)->object.name(), 0, GL_RED, GL_FLOAT, &rubbish);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glEnable(GL_SCISSOR_TEST);

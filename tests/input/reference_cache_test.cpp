@@ -92,6 +92,15 @@ TEST_F(CachedReference, OtherTechniquesShareIt) {
   EXPECT_EQ(identity(onlyFile()), before);
 }
 
+/// A millimetre, so that nothing but the light's place differs: the plan and the picture's size stay.
+TEST_F(CachedReference, AMovedLightHasAnother) {
+  for (const char* height : {"4", "4.001"}) {
+    render(R"({"lights": [{"type": "spot", "position": [0, )" + std::string(height) + R"(, 0], "target": [0, 0, 0],
+               "cone_half_angle_degrees": 90, "source": {"shape": "rectangle", "size": [1, 1]}}]})");
+  }
+  EXPECT_EQ(files().size(), 2U);
+}
+
 class OtherReference : public CachedReference, public ::testing::WithParamInterface<std::pair<const char*, const char*>> {};
 
 TEST_P(OtherReference, IsRenderedAnew) {
@@ -104,7 +113,8 @@ INSTANTIATE_TEST_SUITE_P(
     Input, OtherReference,
     ::testing::Values(
         std::pair{"SceneKey", R"({"scene": {"blocker_height": 1.5}})"},
-        std::pair{"OtherScene", R"({"scene": {"builtin": "square"}})"}, std::pair{"Size", R"({"output": {"size": [48, 64]}})"},
+        std::pair{"OtherScene", R"({"scene": {"builtin": "square"}})"}, std::pair{"Width", R"({"output": {"size": [48, 48]}})"},
+        std::pair{"Height", R"({"output": {"size": [64, 64]}})"},
         std::pair{"Camera", R"({"camera": {"position": [0, 6, 9], "target": [0, 0, 0], "vertical_fov_degrees": 40}})"},
         std::pair{
             "Light",

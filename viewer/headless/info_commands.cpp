@@ -40,8 +40,9 @@ FileKind kindOf(const std::filesystem::path& file) {
   if (extension != ".json") return FileKind::unknown;
   const Json json = Json::parse(readFile(file), nullptr, false);
   // Only a technique file has an object of techniques; a run config has a list.
-  return json.is_object() && (json.contains("library") || (json.contains("techniques") && json["techniques"].is_object())) ? FileKind::techniqueFile
-                                                                                                                        : FileKind::runConfig;
+  return json.is_object() && (json.contains("library") || (json.contains("techniques") && json["techniques"].is_object()))
+             ? FileKind::techniqueFile
+             : FileKind::runConfig;
 }
 
 void validateTechniqueFile(const std::filesystem::path& file, Problems& problems) {
@@ -78,7 +79,10 @@ int listCommand(const CommonOptions& common) {
   if (common.json) {
     Json list = Json::array();
     for (const RegisteredTechnique& t : registry.techniques()) {
-      list.push_back({{"name", t.declaration.name}, {"title", t.declaration.title}, {"role", roleName(t.declaration.role)}, {"file", t.file.string()}});
+      list.push_back({{"name", t.declaration.name},
+                      {"title", t.declaration.title},
+                      {"role", roleName(t.declaration.role)},
+                      {"file", t.file.string()}});
     }
     fmt::print("{}\n", list.dump(2));
     return 0;
@@ -86,7 +90,8 @@ int listCommand(const CommonOptions& common) {
   std::size_t width = 0;
   for (const RegisteredTechnique& t : registry.techniques()) width = std::max(width, t.declaration.name.size());
   for (const RegisteredTechnique& t : registry.techniques()) {
-    const std::string role = t.declaration.role == TechniqueRole::technique ? "" : fmt::format("  ({})", roleName(t.declaration.role));
+    const std::string role =
+        t.declaration.role == TechniqueRole::technique ? "" : fmt::format("  ({})", roleName(t.declaration.role));
     fmt::print("{:<{}}  {}{}\n", t.declaration.name, width, t.declaration.title, role);
   }
   return 0;
@@ -101,8 +106,9 @@ int describeCommand(const CommonOptions& common, const std::string& name) {
   problems.throwIfAny();
   const TechniqueDeclaration& declared = technique.registered->declaration;
   if (common.json) {
-    Json json{{"name", declared.name}, {"title", declared.title}, {"role", roleName(declared.role)}, {"paper", entry.notes.paper},
-              {"summary", entry.notes.summary}, {"schema", schemaOf(*entry.parameters, values.get())}};
+    Json json{{"name", declared.name},           {"title", declared.title},
+              {"role", roleName(declared.role)}, {"paper", entry.notes.paper},
+              {"summary", entry.notes.summary},  {"schema", schemaOf(*entry.parameters, values.get())}};
     fmt::print("{}\n", json.dump(2));
     return 0;
   }
@@ -111,9 +117,11 @@ int describeCommand(const CommonOptions& common, const std::string& name) {
   if (!entry.notes.paper.empty()) fmt::print("  {}\n", entry.notes.paper);
   fmt::print("  role {}, {}\n", roleName(declared.role), technique.registered->file.string());
   if (entry.parameters->fields().empty()) fmt::print("\nno parameters\n");
-  if (!entry.parameters->fields().empty()) fmt::print("\n{:<20} {:<12} {:<11} {}\n", "parameter", "value", "binding", "allowed, meaning");
+  if (!entry.parameters->fields().empty())
+    fmt::print("\n{:<20} {:<12} {:<11} {}\n", "parameter", "value", "binding", "allowed, meaning");
   for (const Field& field : entry.parameters->fields()) {
-    fmt::print("{:<20} {:<12} {:<11} {}; {}\n", field.name, valueText(field, values.get()), bindingName(field.binding), allowedText(field), field.meaning);
+    fmt::print("{:<20} {:<12} {:<11} {}; {}\n", field.name, valueText(field, values.get()), bindingName(field.binding),
+               allowedText(field), field.meaning);
   }
   return 0;
 }
@@ -126,8 +134,10 @@ int scenesCommand(const CommonOptions& common) {
       continue;
     }
     std::string keys;
-    for (const Field& field : scene.table->fields()) keys += fmt::format("{}{} ({})", keys.empty() ? "  keys: " : ", ", field.name, valueText(field, &scene.defaults));
-    fmt::print("{:<13} {}\n{:<13} {} triangles{}\n", scene.name, scene.purpose, "", scene.make(scene.defaults).triangles(), keys);
+    for (const Field& field : scene.table->fields())
+      keys += fmt::format("{}{} ({})", keys.empty() ? "  keys: " : ", ", field.name, valueText(field, &scene.defaults));
+    fmt::print("{:<13} {}\n{:<13} {} triangles{}\n", scene.name, scene.purpose, "", scene.make(scene.defaults).triangles(),
+               keys);
   }
   if (common.json) fmt::print("{}\n", list.dump(2));
   return 0;
@@ -139,12 +149,18 @@ int validateCommand(const CommonOptions& common, const std::vector<std::filesyst
   for (const auto& file : files) {
     try {
       switch (kindOf(file)) {
-        case FileKind::runConfig: resolveRuns(file, registry, problems); break;
-        case FileKind::techniqueFile: validateTechniqueFile(file, problems); break;
+        case FileKind::runConfig:
+          resolveRuns(file, registry, problems);
+          break;
+        case FileKind::techniqueFile:
+          validateTechniqueFile(file, problems);
+          break;
         case FileKind::gltf:
           for (const std::string& warning : loadGltf(file).warnings) log::warning(file.string() + ": " + warning);
           break;
-        case FileKind::unknown: problems.add(file.string(), "", "is neither JSON (run config, technique file) nor glTF (.gltf, .glb)"); break;
+        case FileKind::unknown:
+          problems.add(file.string(), "", "is neither JSON (run config, technique file) nor glTF (.gltf, .glb)");
+          break;
       }
     } catch (const InputError& error) {
       for (const Problem& p : error.problems()) problems.add(p.file, p.pointer, p.message);

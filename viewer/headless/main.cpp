@@ -29,7 +29,8 @@ int run(int argc, char** argv) {
   const auto addCommon = [&](CLI::App* command, bool needsGpu) {
     command->add_option("--technique-dir", common.techniqueDirectories, "further folders with technique JSON files");
     if (!needsGpu) return;
-    command->add_option("--gpu", common.gpu, "index of the GPU; without it the first, or software rendering where there is none");
+    command->add_option("--gpu", common.gpu,
+                        "index of the GPU; without it the first, or software rendering where there is none");
     command->add_flag("--debug", common.debug, "a debug context: slower, the driver says more");
   };
 

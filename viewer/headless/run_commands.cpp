@@ -26,12 +26,13 @@ class ProgressLine {
   void operator()(std::size_t done, std::size_t total, const std::string& what, const JobRecord* record) {
     const double elapsed = (wallMs() - start_) / 1000.0;
     if (terminal_) {
-      const std::string left =
-          done > 0 ? fmt::format(", {:.1f} jobs/min, {:.0f} s left", 60.0 * static_cast<double>(done) / elapsed,
-                                 elapsed / static_cast<double>(done) * static_cast<double>(total - done))
-                   : "";
+      const std::string left = done > 0
+                                   ? fmt::format(", {:.1f} jobs/min, {:.0f} s left", 60.0 * static_cast<double>(done) / elapsed,
+                                                 elapsed / static_cast<double>(done) * static_cast<double>(total - done))
+                                   : "";
       fmt::print(stderr, "\r\033[K[{}/{}{}] {}", done, total, left, what);
-      if (record != nullptr && record->status != JobStatus::ok) fmt::print(stderr, "\r\033[K{} {}: {}\n", what, jobStatusName(record->status), record->reason);
+      if (record != nullptr && record->status != JobStatus::ok)
+        fmt::print(stderr, "\r\033[K{} {}: {}\n", what, jobStatusName(record->status), record->reason);
       if (done == total && record != nullptr) fmt::print(stderr, "\r\033[K");
     } else if (record != nullptr) {
       fmt::print(stderr, "[{}/{}, {:.0f} s] {}: {}{}\n", done, total, elapsed, what, jobStatusName(record->status),
@@ -79,7 +80,8 @@ int planCommand(const CommonOptions& common, const std::filesystem::path& config
         for (const PlanDecision& d : plan.decisions) decisions.push_back(writeObject(*planDecisionTable(), &d));
         all.push_back({{"scene", name}, {"light", i}, {"plan", decisions}});
       } else {
-        fmt::print("{}, light {}: {} triangles, {} cast, {} receive\n", name, i, facts.triangles, facts.casterTriangles, facts.receiverTriangles);
+        fmt::print("{}, light {}: {} triangles, {} cast, {} receive\n", name, i, facts.triangles, facts.casterTriangles,
+                   facts.receiverTriangles);
         for (const PlanDecision& d : plan.decisions) fmt::print("  {:<21} {:<4} {}\n", d.name, d.on ? "on" : "off", d.reason);
       }
     }
@@ -90,10 +92,15 @@ int planCommand(const CommonOptions& common, const std::filesystem::path& config
 
 int renderCommand(const CommonOptions& common, const RenderOptions& options) {
   Registry registry(techniqueDirectories(common));
-  BatchOptions how{.out = options.out, .resume = options.resume, .measureTime = options.measureTime, .exr = options.exr,
+  BatchOptions how{.out = options.out,
+                   .resume = options.resume,
+                   .measureTime = options.measureTime,
+                   .exr = options.exr,
                    .checkFinite = options.checkFinite};
   readShard(options.shard, how);
-  how.referenceCache = options.noCache ? std::filesystem::path() : options.cache.empty() ? cacheDirectory() / "references" : options.cache;
+  how.referenceCache = options.noCache         ? std::filesystem::path()
+                       : options.cache.empty() ? cacheDirectory() / "references"
+                                               : options.cache;
 
   Problems problems;
   std::vector<ResolvedRun> runs;
@@ -111,7 +118,8 @@ int renderCommand(const CommonOptions& common, const RenderOptions& options) {
   fmt::print("{}\n", summaryTable(summary.records));
   if (summary.kept > 0) fmt::print("{} of {} results were there already\n", summary.kept, summary.records.size());
   fmt::print("images   {}\nresults  {}\n", (options.out / "images").string(), summary.results.string());
-  if (summary.notOk > 0) fmt::print("{} of {} jobs were refused or failed; their reasons are above\n", summary.notOk, summary.records.size());
+  if (summary.notOk > 0)
+    fmt::print("{} of {} jobs were refused or failed; their reasons are above\n", summary.notOk, summary.records.size());
   const bool failed = std::any_of(summary.records.begin(), summary.records.end(), [](const JobRecord& r) {
     return r.status == JobStatus::failed || r.status == JobStatus::crashed;
   });

@@ -12,7 +12,11 @@ double milliseconds(clockid_t clock) {
 }
 }  // namespace
 
-double processCpuMs() { return milliseconds(CLOCK_PROCESS_CPUTIME_ID); }
-double wallMs() { return milliseconds(CLOCK_MONOTONIC); }
+double processCpuMs() {
+  return milliseconds(CLOCK_PROCESS_CPUTIME_ID);
+}
+double wallMs() {
+  return milliseconds(CLOCK_MONOTONIC);
+}
 
 }  // namespace gnomon

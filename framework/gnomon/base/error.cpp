@@ -1,9 +1,9 @@
 #include "gnomon/base/error.h"
 
-#include <set>
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <set>
 
 namespace gnomon {
 namespace {

@@ -26,8 +26,8 @@ ContextInfo currentContextInfo() {
 struct DebugMessages::State {
   std::string errors;
 
-  static void GLAPIENTRY receive(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length, const GLchar* text,
-                                 const void* user) {
+  static void GLAPIENTRY receive(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length,
+                                 const GLchar* text, const void* user) {
     const std::string message(text, length < 0 ? std::strlen(text) : static_cast<std::size_t>(length));
     if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
       // Exceptions must not cross the driver: the message waits for throwIfError.
@@ -46,7 +46,9 @@ DebugMessages::DebugMessages() : state_(std::make_unique<State>()) {
   glDebugMessageCallback(&State::receive, state_.get());
 }
 
-DebugMessages::~DebugMessages() { glDebugMessageCallback(nullptr, nullptr); }
+DebugMessages::~DebugMessages() {
+  glDebugMessageCallback(nullptr, nullptr);
+}
 
 void DebugMessages::throwIfError(const std::string& where) {
   if (state_->errors.empty()) return;
@@ -55,7 +57,9 @@ void DebugMessages::throwIfError(const std::string& where) {
   throw Error(message);
 }
 
-void DebugMessages::discard() { state_->errors.clear(); }
+void DebugMessages::discard() {
+  state_->errors.clear();
+}
 
 // --- EGL ----------------------------------------------------------------------------------------------------------------
 
@@ -66,7 +70,9 @@ struct HeadlessContext::State {
 
 namespace {
 
-bool hasExtension(const char* list, std::string_view name) { return list != nullptr && std::string_view(list).find(name) != std::string_view::npos; }
+bool hasExtension(const char* list, std::string_view name) {
+  return list != nullptr && std::string_view(list).find(name) != std::string_view::npos;
+}
 
 std::vector<EGLDeviceEXT> hardwareDevices() {
   if (!hasExtension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_enumeration")) return {};
@@ -81,7 +87,9 @@ std::vector<EGLDeviceEXT> hardwareDevices() {
   return hardware;
 }
 
-std::string eglErrorText() { return fmt::format("EGL error 0x{:04x}", static_cast<unsigned>(eglGetError())); }
+std::string eglErrorText() {
+  return fmt::format("EGL error 0x{:04x}", static_cast<unsigned>(eglGetError()));
+}
 
 /// An empty text on success, else why not.
 std::string tryCreate(EGLDisplay display, bool debug, EGLContext& context) {
@@ -90,8 +98,14 @@ std::string tryCreate(EGLDisplay display, bool debug, EGLContext& context) {
   if (display == EGL_NO_DISPLAY) return "no display";
   if (eglInitialize(display, &major, &minor) == EGL_FALSE) return "eglInitialize failed, " + eglErrorText();
   if (eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return "no desktop OpenGL, " + eglErrorText();
-  const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_CONTEXT_OPENGL_DEBUG, debug ? EGL_TRUE : EGL_FALSE,
+  const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                         4,
+                                         EGL_CONTEXT_MINOR_VERSION,
+                                         5,
+                                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                         EGL_CONTEXT_OPENGL_DEBUG,
+                                         debug ? EGL_TRUE : EGL_FALSE,
                                          EGL_NONE};
   context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
   if (context == EGL_NO_CONTEXT) return "no OpenGL 4.5 core context, " + eglErrorText();
@@ -107,8 +121,9 @@ std::string tryCreate(EGLDisplay display, bool debug, EGLContext& context) {
 HeadlessContext::HeadlessContext(const HeadlessOptions& options) : state_(std::make_unique<State>()) {
   const std::vector<EGLDeviceEXT> devices = hardwareDevices();
   if (options.gpu >= static_cast<int>(devices.size())) {
-    throw Error(fmt::format("--gpu {}: EGL finds {} hardware device(s); leave --gpu out to take the first, or software rendering",
-                            options.gpu, devices.size()));
+    throw Error(
+        fmt::format("--gpu {}: EGL finds {} hardware device(s); leave --gpu out to take the first, or software rendering",
+                    options.gpu, devices.size()));
   }
   std::string tried;
   for (std::size_t i = 0; i < devices.size(); ++i) {

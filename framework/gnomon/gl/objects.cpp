@@ -59,7 +59,8 @@ BufferObject makeBuffer(std::size_t bytes, const void* data, const std::string& 
   glCreateBuffers(1, &name);
   BufferObject buffer(name);
   // OpenGL has no empty buffers; nothing is read from `data` beyond `bytes`.
-  glNamedBufferStorage(name, bytes == 0 ? 16 : static_cast<GLsizeiptr>(bytes), bytes == 0 ? nullptr : data, GL_DYNAMIC_STORAGE_BIT);
+  glNamedBufferStorage(name, bytes == 0 ? 16 : static_cast<GLsizeiptr>(bytes), bytes == 0 ? nullptr : data,
+                       GL_DYNAMIC_STORAGE_BIT);
   setLabel(GL_BUFFER, name, label);
   return buffer;
 }

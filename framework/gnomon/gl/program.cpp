@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -22,13 +23,13 @@ std::string declaration(const Constant& constant) {
   return fmt::format("const float {} = {:.9e};\n", constant.name, std::get<float>(constant.value));
 }
 
-/// The name between the quotes of an #include line, or "" when the line is none.
-std::string includedName(const std::string& line) {
-  std::size_t i = line.find_first_not_of(" \t");
-  if (i == std::string::npos || line.compare(i, 8, "#include") != 0) return {};
+/// The name between the quotes of an #include line, empty if it has none; nullopt when the line is no such line.
+std::optional<std::string> includedName(const std::string& line) {
+  const std::size_t i = line.find_first_not_of(" \t");
+  if (i == std::string::npos || line.compare(i, 8, "#include") != 0) return std::nullopt;
   const std::size_t open = line.find('"', i + 8);
   const std::size_t close = open == std::string::npos ? open : line.find('"', open + 1);
-  return close == std::string::npos ? std::string("?") : line.substr(open + 1, close - open - 1);
+  return close == std::string::npos ? std::string() : line.substr(open + 1, close - open - 1);
 }
 
 class Expander {
@@ -36,6 +37,7 @@ class Expander {
   explicit Expander(const ShaderSources& sources) : sources_(sources) {}
 
   void expand(const std::string& name, const std::filesystem::path& besides, const std::string& from, int depth) {
+    if (name.empty()) throw Error(from + ": #include needs \"file\" in quotes");
     if (depth > kMaxIncludeDepth) throw Error(from + ": #include nested deeper than 32");
     const std::filesystem::path relative(name);
     if (relative.is_absolute() ||
@@ -76,11 +78,11 @@ class Expander {
     std::istringstream lines(text);
     std::string line;
     for (int at = 1; std::getline(lines, line); ++at) {
-      const std::string name = includedName(line);
-      if (name.empty()) {
+      const std::optional<std::string> name = includedName(line);
+      if (!name) {
         result.text += line + '\n';
       } else {
-        expand(name, path.parent_path(), fmt::format("{}:{}", path.string(), at), depth + 1);
+        expand(*name, path.parent_path(), fmt::format("{}:{}", path.string(), at), depth + 1);
         result.text += fmt::format("#line {} {}\n", at + 1, number);
       }
     }

@@ -72,6 +72,7 @@ class GraphExecution final : public CpuContext {
       : s_(state), frame_(frame), revisions_(revisions), options_(options) {}
 
   GraphReport execute() {
+    report_.passes.reserve(s_.passes.size());
     for (PassNode& node : s_.passes) {
       if (node.kept) step(node);
     }

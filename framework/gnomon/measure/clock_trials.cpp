@@ -14,9 +14,10 @@ constexpr double kSmallestTrialMs = 4.0;  // twice what counts as heavy
 class TrialDrawing {
  public:
   TrialDrawing()
-      : program_(gl::makeProgram({{installationDirectory() / "shaders"}, {}},
-                                 {{GL_VERTEX_SHADER, "gnomon/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "gnomon/clock_trial.frag"}}, {},
-                                 "clock trial")),
+      : program_(
+            gl::makeProgram({{installationDirectory() / "shaders"}, {}},
+                            {{GL_VERTEX_SHADER, "gnomon/fullscreen.vert"}, {GL_FRAGMENT_SHADER, "gnomon/clock_trial.frag"}}, {},
+                            "clock trial")),
         target_(gl::makeTexture2D(GL_R32F, {kSize, kSize}, "clock trial")),
         framebuffer_(gl::makeFramebuffer("clock trial")),
         vertexArray_(gl::makeVertexArray("clock trial")) {

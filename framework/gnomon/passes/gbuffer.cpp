@@ -46,11 +46,13 @@ SessionPasses sessionPasses(GraphBuilder& graph, glm::ivec2 size) {
   graph.provide("View", passes.view);
   graph.provide("LightView", passes.lightView);
   const DrawList visible = graph.drawList("visible instances");
+  const auto everything = std::make_shared<std::vector<std::uint8_t>>();  // flags: kept, so that frames allocate nothing
 
   graph.cpu("view", {.inputs = {Input::camera, Input::geometry}, .buffers = {passes.view}, .draws = {visible}, .run = [=](CpuContext& context) {
                        const FrameInputs& frame = context.frame();
                        context.writeBlock(passes.view, viewBlock(frame));
-                       context.draw(visible, std::vector<std::uint8_t>(frame.scene.instances.size(), 1), frame.camera.position);
+                       everything->assign(frame.scene.instances.size(), 1);
+                       context.draw(visible, *everything, frame.camera.position);
                      }});
   graph.cpu("light view", {.inputs = {Input::camera, Input::light}, .buffers = {passes.lightView}, .run = [=](CpuContext& context) {
                              context.writeBlock(passes.lightView, lightViewBlock(context.frame()));

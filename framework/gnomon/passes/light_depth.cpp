@@ -36,16 +36,19 @@ glm::dvec2 depthCoefficients(bool perspective, double near, double far) {
 
 struct FormatPrecision {
   Format format;
-  double step;        ///< quantum: absolute, or relative for float
+  double step;  ///< quantum: absolute, or relative for float
   bool relative;
-  double nearRatio;   ///< near is no nearer than this part of far, unless a receiver is: fixed-point formats would drown in it
+  double nearRatio;  ///< near is no nearer than this part of far, unless a receiver is: fixed-point formats would drown in it
 };
 
 FormatPrecision precisionOf(MapFormat format) {
   switch (format) {
-    case MapFormat::d16: return {Format::d16, std::ldexp(1.0, -16), false, 1e-2};
-    case MapFormat::d24: return {Format::d24, std::ldexp(1.0, -24), false, 1e-4};
-    case MapFormat::d32f: break;
+    case MapFormat::d16:
+      return {Format::d16, std::ldexp(1.0, -16), false, 1e-2};
+    case MapFormat::d24:
+      return {Format::d24, std::ldexp(1.0, -24), false, 1e-4};
+    case MapFormat::d32f:
+      break;
   }
   return {Format::d32f, std::ldexp(1.0, -23), true, 1e-10};
 }
@@ -102,22 +105,27 @@ ParameterTable<DepthMapParameters> depthMapTable() {
               "compares each texel with the depth of the receiver's own plane there"),
       real("limit", &DepthBias::limit, {.min = 0.0, .max = 1e6, .unit = "texels"}, Binding::uniform,
            "slope and plane corrections stop at that many texel footprints of depth")};
-  return {size("map_size", &DepthMapParameters::size, {.min = 1, .max = 65536, .unit = "texels"}, Binding::structure,
-               "width and height of the depth map"),
-          choice("map_format", &DepthMapParameters::format, {"d16", "d24", "d32f"}, Binding::structure, "how depths are stored"),
-          inlined(&DepthMapParameters::bias, bias, "bias.")};
+  return {
+      size("map_size", &DepthMapParameters::size, {.min = 1, .max = 65536, .unit = "texels"}, Binding::structure,
+           "width and height of the depth map"),
+      choice("map_format", &DepthMapParameters::format, {"d16", "d24", "d32f"}, Binding::structure, "how depths are stored"),
+      inlined(&DepthMapParameters::bias, bias, "bias.")};
 }
 
-Support depthMapSupport(const SceneSurvey& /*survey*/, const Light& light, const Frame& frame, const DepthMapParameters& parameters) {
+Support depthMapSupport(const SceneSurvey& /*survey*/, const Light& light, const Frame& frame,
+                        const DepthMapParameters& parameters) {
   if (light.type == LightType::point) {
-    return Support::refused("a point light shines in all directions and one planar map covers less than half of them; use a spot");
+    return Support::refused(
+        "a point light shines in all directions and one planar map covers less than half of them; use a spot");
   }
   if (light.type == LightType::spot && light.coneHalfAngleDegrees > kWidestHalfAngleDegrees) {
-    return Support::refused(fmt::format("a planar map covers a cone of at most {} degrees half angle, the light's is {}; narrow the cone",
-                                        kWidestHalfAngleDegrees, light.coneHalfAngleDegrees));
+    return Support::refused(
+        fmt::format("a planar map covers a cone of at most {} degrees half angle, the light's is {}; narrow the cone",
+                    kWidestHalfAngleDegrees, light.coneHalfAngleDegrees));
   }
   if (parameters.size.x > frame.maxTextureSize || parameters.size.y > frame.maxTextureSize) {
-    return Support::refused(fmt::format("map_size {}x{} exceeds this driver's limit of {}", parameters.size.x, parameters.size.y, frame.maxTextureSize));
+    return Support::refused(fmt::format("map_size {}x{} exceeds this driver's limit of {}", parameters.size.x,
+                                        parameters.size.y, frame.maxTextureSize));
   }
   return Support::ignoring({Effect::penumbra, Effect::varyingPenumbra, Effect::overlappingPenumbrae});
 }
@@ -147,23 +155,24 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& /*frame*/, const DepthMa
   // A tap at the filter's border may fall anywhere in its texel, and rasterisation decides at texel centres: one texel more.
   const glm::dvec2 margin = (filterRadiusTexels + parameters.bias.normal + 1.5) * 2.0 / glm::dvec2(mapSize);
   const auto scratch = std::make_shared<MapFit>();
-  graph.cpu("fit", {.inputs = {Input::geometry, Input::light, Input::camera},
-                    .buffers = {lightMap},
-                    .draws = {casters},
-                    .run = [=](CpuContext& context) {
-                      const FrameInputs& frame = context.frame();
-                      const MapSubject subject = mapSubject(frame);
-                      const MapPlane plane = mapPlane(subject);
-                      fitMap(subject, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = precision.nearRatio}, *scratch);
-                      context.writeBlock(lightMap, lightMapBlock(frame, plane, *scratch, mapSize, precision, filterRadiusTexels));
-                      context.draw(casters, scratch->casters, plane.axes.origin);
-                      Facts& now = context.facts();
-                      now.perspective = plane.perspective;
-                      now.texel = 2.0 * plane.halfExtent / glm::dvec2(mapSize);
-                      now.nearDepth = scratch->near;
-                      now.farDepth = scratch->far;
-                      now.cameraDistance = glm::length(frame.camera.position - plane.axes.origin);
-                    }});
+  graph.cpu("fit",
+            {.inputs = {Input::geometry, Input::light, Input::camera},
+             .buffers = {lightMap},
+             .draws = {casters},
+             .run = [=](CpuContext& context) {
+               const FrameInputs& frame = context.frame();
+               const MapSubject subject = mapSubject(frame);
+               const MapPlane plane = mapPlane(subject);
+               fitMap(subject, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = precision.nearRatio}, *scratch);
+               context.writeBlock(lightMap, lightMapBlock(frame, plane, *scratch, mapSize, precision, filterRadiusTexels));
+               context.draw(casters, scratch->casters, plane.axes.origin);
+               Facts& now = context.facts();
+               now.perspective = plane.perspective;
+               now.texel = 2.0 * plane.halfExtent / glm::dvec2(mapSize);
+               now.nearDepth = scratch->near;
+               now.farDepth = scratch->far;
+               now.cameraDistance = glm::length(frame.camera.position - plane.axes.origin);
+             }});
 
   const Texture map = graph.texture("depth map", {mapSize, precision.format});
   // Casters nearer than near are clamped to it: they still block, and near can be fitted to what resolves the receivers.

@@ -28,7 +28,8 @@ struct DepthMapParameters {
 ParameterTable<DepthMapParameters> depthMapTable();
 
 /// Refuses lights that one planar map cannot cover and maps larger than the driver allows.
-Support depthMapSupport(const SceneSurvey& survey, const Light& light, const Frame& frame, const DepthMapParameters& parameters);
+Support depthMapSupport(const SceneSurvey& survey, const Light& light, const Frame& frame,
+                        const DepthMapParameters& parameters);
 
 struct LightDepth {
   Texture map;  ///< reversed depth: 1 at near, 0 at far and where nothing is

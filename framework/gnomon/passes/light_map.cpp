@@ -1,7 +1,9 @@
 #include "gnomon/passes/light_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <limits>
@@ -13,8 +15,8 @@ namespace gnomon {
 
 namespace {
 
-/// A box or polytope as the map sees it. Depths are along the light's axis; what reaches behind the light's plane has no
-/// bounded image under perspective and covers the map.
+/// A box or polytope as the map sees it. Depths are along the light's axis; under perspective what is wholly behind the light's
+/// plane has no image (an empty one), and what reaches behind it has no bounded one and covers the map.
 struct Image2D {
   glm::dvec2 min{std::numeric_limits<double>::infinity()};
   glm::dvec2 max{-std::numeric_limits<double>::infinity()};
@@ -55,36 +57,44 @@ Image2D imageOf(const MapPlane& plane, const Bounds& box) {
   return image;
 }
 
-/// What of the map receivers read, between which depths.
-Image2D imageOf(const MapPlane& plane, const std::vector<VisibleReceiver>& receivers) {
+/// Half-spaces of the map's pyramid, as wide as the map with its margin, relative to `origin`: what a spot lights lies inside.
+/// Without them a floor that passes under the light would pull near to the light's plane and spread over the whole map. A
+/// directional map spans all receivers and needs none.
+std::array<glm::dvec4, 4> pyramid(const MapPlane& plane, const glm::dvec2& margin, const glm::dvec3& origin) {
+  const auto side = [&](const glm::dvec3& axis, double tangent) {  // axis.p <= tangent * depth
+    const glm::dvec3 n = glm::normalize(-axis - plane.axes.z * tangent);
+    return glm::dvec4(n, glm::dot(n, origin - plane.axes.origin));
+  };
+  const glm::dvec2 tangent = plane.halfExtent * (1.0 + margin);
+  return {side(plane.axes.x, tangent.x), side(-plane.axes.x, tangent.x), side(plane.axes.y, tangent.y),
+          side(-plane.axes.y, tangent.y)};
+}
+
+enum class Receivers { all, inView };
+
+/// What of the map those receivers in its reach read, between which depths.
+Image2D imageOfReceivers(const MapSubject& subject, const MapPlane& plane, const glm::dvec2& margin, Receivers which) {
+  const glm::dvec3& eye = subject.camera.position;
+  const std::array<glm::dvec4, 5> frustum = frustumPlanes(subject.camera, subject.aspect);
+  const std::array<glm::dvec4, 4> reach = pyramid(plane, margin, eye);
+  std::array<glm::dvec4, 9> planes;
+  auto end = planes.begin();
+  if (which == Receivers::inView) end = std::copy(frustum.begin(), frustum.end(), end);
+  if (plane.perspective) end = std::copy(reach.begin(), reach.end(), end);
+
   Image2D all;
-  for (const VisibleReceiver& receiver : receivers) {
+  const auto add = [&](std::size_t /*instance*/, std::span<const glm::dvec3> points) {
     Image2D image;
-    for (const glm::dvec3& point : receiver.points) image.add(plane, point);
+    for (const glm::dvec3& point : points) image.add(plane, point);
     image.close();
-    if (plane.perspective && image.farthest <= 0.0) continue;  // behind the light: out of its reach
+    if (plane.perspective && image.farthest <= 0.0) return;  // behind the light: out of its reach
     all.min = glm::min(all.min, image.min);
     all.max = glm::max(all.max, image.max);
     all.nearest = std::min(all.nearest, image.nearest);
     all.farthest = std::max(all.farthest, image.farthest);
-  }
-  return all;
-}
-
-/// Appends the half-spaces of the map's pyramid, as wide as the map with its margin, relative to `origin`: what a spot lights
-/// lies inside. A directional map spans all receivers and needs none. Without them a floor that passes under the light would
-/// pull near to the light's plane and spread over the whole map.
-void addPyramid(const MapPlane& plane, const glm::dvec2& margin, const glm::dvec3& origin, std::vector<glm::dvec4>& planes) {
-  if (!plane.perspective) return;
-  const auto add = [&](const glm::dvec3& axis, double tangent) {  // axis.p <= tangent * depth
-    const glm::dvec3 n = glm::normalize(-axis - plane.axes.z * tangent);
-    planes.emplace_back(n, glm::dot(n, origin - plane.axes.origin));
   };
-  const glm::dvec2 tangent = plane.halfExtent * (1.0 + margin);
-  add(plane.axes.x, tangent.x);
-  add(-plane.axes.x, tangent.x);
-  add(plane.axes.y, tangent.y);
-  add(-plane.axes.y, tangent.y);
+  visitReceiversWithin(subject.scene, subject.instanceBounds, eye, std::span(planes.begin(), end), std::cref(add));
+  return all;
 }
 
 }  // namespace
@@ -133,13 +143,9 @@ MapPlane mapPlane(const MapSubject& subject) {
 
 void fitMap(const MapSubject& subject, const MapPlane& plane, const MapFitting& how, MapFit& result) {
   const Scene& scene = subject.scene;
-  const glm::dvec3& eye = subject.camera.position;
 
   // The region of the map that visible receivers read, and the deepest of them.
-  const std::array<glm::dvec4, 5> frustum = frustumPlanes(subject.camera, subject.aspect);
-  std::vector<glm::dvec4> planes(frustum.begin(), frustum.end());
-  addPyramid(plane, how.margin, eye, planes);
-  Image2D read = imageOf(plane, receiversWithin(scene, subject.instanceBounds, eye, planes));
+  Image2D read = imageOfReceivers(subject, plane, how.margin, Receivers::inView);
   const glm::dvec2 whole = glm::dvec2(1.0) + how.margin;
   read.min = glm::max(read.min, -whole);
   read.max = glm::min(read.max, whole);
@@ -155,8 +161,7 @@ void fitMap(const MapSubject& subject, const MapPlane& plane, const MapFitting& 
     sceneNear = std::min(sceneNear, image.nearest);
     sceneFar = std::max(sceneFar, image.farthest);
     if (!scene.instances[i].casts) continue;
-    const bool inFront = !plane.perspective || image.farthest > 0.0;
-    const bool reaches = inFront && image.nearest <= read.farthest && image.overlaps(read, how.margin);
+    const bool reaches = image.nearest <= read.farthest && image.overlaps(read, how.margin);
     result.casters[i] = reaches || !how.cull ? 1 : 0;
     if (reaches) near = std::min(near, image.nearest);
   }
@@ -173,12 +178,8 @@ void fitMap(const MapSubject& subject, const MapPlane& plane, const MapFitting& 
   near -= room;
   if (plane.perspective) {
     // Casters nearer than near are clamped to it and still block; receivers nearer than near would be lit.
-    double nearestReceiver = read.nearest;
-    if (!how.fit) {
-      planes.clear();
-      addPyramid(plane, how.margin, eye, planes);
-      nearestReceiver = imageOf(plane, receiversWithin(scene, subject.instanceBounds, eye, planes)).nearest;
-    }
+    const double nearestReceiver =
+        how.fit ? read.nearest : imageOfReceivers(subject, plane, how.margin, Receivers::all).nearest;
     near = std::max({near, std::min(std::max(nearestReceiver - room, 0.0), far * how.nearRatio), far * 1e-12});
   }
   result.near = near;

@@ -31,13 +31,17 @@ std::string label(const ResolvedRun& run, const ResolvedJob& job) {
 
 }  // namespace
 
-BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, const BatchOptions& options, const BatchProgress& progress) {
+BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, const BatchOptions& options,
+                      const BatchProgress& progress) {
   BatchSummary summary;
   summary.results = options.out / (options.shards > 1 ? fmt::format("results.{}.jsonl", options.shard) : "results.jsonl");
-  const std::map<std::string, JobRecord> earlier = options.resume ? earlierResults(options.out) : std::map<std::string, JobRecord>{};
+  const std::map<std::string, JobRecord> earlier =
+      options.resume ? earlierResults(options.out) : std::map<std::string, JobRecord>{};
   if (!options.resume) writeFileAtomically(summary.results, "");
 
-  LightRunOptions how{.referenceCache = options.referenceCache, .imageDirectory = options.out / "images", .exr = options.exr,
+  LightRunOptions how{.referenceCache = options.referenceCache,
+                      .imageDirectory = options.out / "images",
+                      .exr = options.exr,
                       .checkFinite = options.checkFinite};
   if (options.measureTime) {
     const ClockChoice choice = chooseClock(runClockTrials());

@@ -13,8 +13,8 @@ namespace gnomon {
 
 struct BatchOptions {
   std::filesystem::path out = {};
-  bool resume = false;           ///< keep results that are there, run what is missing; else the results file starts anew
-  int shard = 0;                 ///< this process takes jobs shard, shard + shards, ... of all
+  bool resume = false;  ///< keep results that are there, run what is missing; else the results file starts anew
+  int shard = 0;        ///< this process takes jobs shard, shard + shards, ... of all
   int shards = 1;
   bool measureTime = true;
   bool exr = true;
@@ -30,10 +30,12 @@ struct BatchSummary {
 };
 
 /// Called when a job starts (record null) and when it has ended.
-using BatchProgress = std::function<void(std::size_t done, std::size_t total, const std::string& what, const JobRecord* record)>;
+using BatchProgress =
+    std::function<void(std::size_t done, std::size_t total, const std::string& what, const JobRecord* record)>;
 
 /// Runs all jobs of all runs in the current OpenGL context. Each record is appended whole and synced. Throws Error only for
 /// what ends a batch: a folder that cannot be written, a reference that cannot be rendered.
-BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, const BatchOptions& options, const BatchProgress& progress);
+BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, const BatchOptions& options,
+                      const BatchProgress& progress);
 
 }  // namespace gnomon

@@ -48,8 +48,8 @@ struct MeasureChoice {
 };
 
 struct RunConfig {
-  std::filesystem::path path;  ///< of the config itself, as given
-  std::string name;            ///< without one, the file's name without extension
+  std::filesystem::path path;       ///< of the config itself, as given
+  std::string name;                 ///< without one, the file's name without extension
   std::vector<SceneChoice> scenes;  ///< one or more: each is rendered with everything below
   PlanOverrides plan;
   std::optional<Camera> camera;              ///< nullopt: the scene's own

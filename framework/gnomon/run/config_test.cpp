@@ -78,10 +78,10 @@ TEST(RunConfig, WhatIsNotNamedIsLeftToTheScene) {
 }
 
 TEST(RunConfig, MustNameSceneAndTechniques) {
-  EXPECT_EQ(faults("{}"),
-            (std::vector<std::string>{"runs/c.json: the key \"scene\" is missing: a built-in scene or a glTF file, or a list of them",
-                                      "runs/c.json: the key \"techniques\" is missing: what is rendered, compared and "
-                                      "measured"}));
+  EXPECT_EQ(faults("{}"), (std::vector<std::string>{
+                              "runs/c.json: the key \"scene\" is missing: a built-in scene or a glTF file, or a list of them",
+                              "runs/c.json: the key \"techniques\" is missing: what is rendered, compared and "
+                              "measured"}));
   EXPECT_EQ(faults(withTechnique("")).size(), 1U);
   EXPECT_EQ(faults(withTechnique("{}")).size(), 1U);
 }

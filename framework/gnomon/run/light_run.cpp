@@ -28,7 +28,9 @@ namespace {
 constexpr double kTurnDegrees = 0.5;
 constexpr int kPassTimingFrames = 3;
 
-int posesOf(const MeasureChoice& measure) { return std::max(1, measure.frames / (2 * measure.blocks)); }
+int posesOf(const MeasureChoice& measure) {
+  return std::max(1, measure.frames / (2 * measure.blocks));
+}
 
 std::vector<Light> posesOf(const Light& light, int poses) {
   std::vector<Light> all;
@@ -42,14 +44,17 @@ Image normalLightCosine(const Session& session, const Image& mask, const Image& 
   Image cosine(mask.width, mask.height);
   for (std::size_t i = 0; i < mask.pixels(); ++i) {
     if (mask.data[i] < 0.5f) continue;
-    const glm::dvec3 p = session.camera().position + glm::dvec3(positions.data[4 * i], positions.data[4 * i + 1], positions.data[4 * i + 2]);
+    const glm::dvec3 p =
+        session.camera().position + glm::dvec3(positions.data[4 * i], positions.data[4 * i + 1], positions.data[4 * i + 2]);
     const glm::dvec3 n(normals.data[4 * i], normals.data[4 * i + 1], normals.data[4 * i + 2]);
     cosine.data[i] = static_cast<float>(glm::dot(n, towardsCentre(session.light(), axes, p)));
   }
   return cosine;
 }
 
-Image firstThree(const Image& image) { return colourOf(image); }
+Image firstThree(const Image& image) {
+  return colourOf(image);
+}
 
 std::string processorName() {
   std::ifstream file("/proc/cpuinfo");
@@ -97,7 +102,8 @@ struct LightRun::State {
         light(l),
         registry(g),
         options(std::move(o)),
-        session({r.scene, r.lights[l], r.camera, r.config.output.size, r.config.plan, posesOf(r.lights[l], posesOf(r.config.measure))}),
+        session({r.scene, r.lights[l], r.camera, r.config.output.size, r.config.plan,
+                 posesOf(r.lights[l], posesOf(r.config.measure))}),
         reference(renderReference(session, registry, {r.reference, options.referenceCache})),
         machine{gl::currentContextInfo().renderer, processorName()} {
     session.runShared();
@@ -221,7 +227,9 @@ LightRun::LightRun(const ResolvedRun& run, std::size_t light, Registry& registry
     : state_(std::make_unique<State>(run, light, registry, std::move(options))) {}
 LightRun::~LightRun() = default;
 
-bool LightRun::referenceFromCache() const { return state_->reference.fromCache; }
+bool LightRun::referenceFromCache() const {
+  return state_->reference.fromCache;
+}
 
 JobRecord LightRun::run(const ResolvedTechnique& technique) {
   State& s = *state_;
@@ -244,12 +252,13 @@ JobRecord LightRun::run(const ResolvedTechnique& technique) {
 }
 
 std::string jobKey(const ResolvedRun& run, std::size_t light, const ResolvedTechnique& technique) {
-  const std::string decides = fmt::format(
-      "{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {} {} {}", contentHash(run.scene), writeObject(*lightTable(), &run.lights[light]).dump(),
-      writeObject(*cameraTable(), &run.camera).dump(), run.config.output.size.x, run.config.output.size.y, technique.name(),
-      technique.parametersJson().dump(), run.reference.name(), run.reference.parametersJson().dump(), run.baseline.name(),
-      run.baseline.parametersJson().dump(), writeObject(*planOverridesTable(), &run.config.plan).dump(), run.config.measure.frames, run.config.measure.blocks,
-      fmt::join(run.config.measure.regimes, " "));
+  const std::string decides =
+      fmt::format("{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {} {} {}", contentHash(run.scene),
+                  writeObject(*lightTable(), &run.lights[light]).dump(), writeObject(*cameraTable(), &run.camera).dump(),
+                  run.config.output.size.x, run.config.output.size.y, technique.name(), technique.parametersJson().dump(),
+                  run.reference.name(), run.reference.parametersJson().dump(), run.baseline.name(),
+                  run.baseline.parametersJson().dump(), writeObject(*planOverridesTable(), &run.config.plan).dump(),
+                  run.config.measure.frames, run.config.measure.blocks, fmt::join(run.config.measure.regimes, " "));
   return technique.name() + "-" + hashHex(decides).substr(0, 16);
 }
 

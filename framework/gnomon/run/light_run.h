@@ -14,9 +14,9 @@
 namespace gnomon {
 
 struct LightRunOptions {
-  std::filesystem::path referenceCache = {};   ///< empty: none
-  std::optional<Clock> clock = {};             ///< times are measured with it; empty: no times
-  std::filesystem::path imageDirectory = {};   ///< empty: no pictures
+  std::filesystem::path referenceCache = {};  ///< empty: none
+  std::optional<Clock> clock = {};            ///< times are measured with it; empty: no times
+  std::filesystem::path imageDirectory = {};  ///< empty: no pictures
   bool exr = false;
   bool checkFinite = false;
 };

@@ -30,7 +30,8 @@ Image channelOf(const Image& image, int channel) {
 
 Image errorOf(const Image& technique, const ReferencePair& reference) {
   Image error(technique.width, technique.height);
-  for (std::size_t i = 0; i < error.pixels(); ++i) error.data[i] = technique.data[i] - 0.5f * (reference.a.data[i] + reference.b.data[i]);
+  for (std::size_t i = 0; i < error.pixels(); ++i)
+    error.data[i] = technique.data[i] - 0.5f * (reference.a.data[i] + reference.b.data[i]);
   return error;
 }
 
@@ -51,7 +52,8 @@ Image signedErrorPicture(const Image& technique, const ReferencePair& reference,
   Image picture(technique.width, technique.height, 3);
   for (std::size_t i = 0; i < picture.pixels(); ++i) {
     const float t = std::clamp(error.data[i] / kErrorScale, -1.0f, 1.0f);
-    const glm::vec3 colour = std::isfinite(error.data[i]) ? glm::mix(white, t < 0.0f ? tooDark : leak, std::abs(t)) : glm::vec3(1.0f, 0.0f, 1.0f);
+    const glm::vec3 colour =
+        std::isfinite(error.data[i]) ? glm::mix(white, t < 0.0f ? tooDark : leak, std::abs(t)) : glm::vec3(1.0f, 0.0f, 1.0f);
     put(picture, i, mask.data[i] > 0.5f ? colour : kOutside);
   }
   return picture;
@@ -74,7 +76,8 @@ Image classPicture(const Image& classes) {
 
 Image colourOf(const Image& rgba) {
   Image picture(rgba.width, rgba.height, 3);
-  for (std::size_t i = 0; i < picture.pixels(); ++i) put(picture, i, {rgba.data[4 * i], rgba.data[4 * i + 1], rgba.data[4 * i + 2]});
+  for (std::size_t i = 0; i < picture.pixels(); ++i)
+    put(picture, i, {rgba.data[4 * i], rgba.data[4 * i + 1], rgba.data[4 * i + 2]});
   return picture;
 }
 
@@ -83,7 +86,8 @@ std::vector<std::filesystem::path> writePictures(const std::filesystem::path& di
                                                  const Session& session) {
   std::vector<std::filesystem::path> written;
   Image reference = pictures.reference.a;
-  for (std::size_t i = 0; i < reference.data.size(); ++i) reference.data[i] = 0.5f * (reference.data[i] + pictures.reference.b.data[i]);
+  for (std::size_t i = 0; i < reference.data.size(); ++i)
+    reference.data[i] = 0.5f * (reference.data[i] + pictures.reference.b.data[i]);
   for (const std::string& kind : kinds) {
     const std::filesystem::path path = directory / (stem + "_" + kind + ".png");
     if (kind == "shaded") writePng(path, colourOf(pictures.shaded));

@@ -18,7 +18,8 @@ std::string shaderText(const std::filesystem::path& directory) {
   std::error_code ignored;
   for (const auto& item : std::filesystem::recursive_directory_iterator(directory, ignored)) {
     const auto extension = item.path().extension();
-    if (extension == ".glsl" || extension == ".vert" || extension == ".frag" || extension == ".comp") files.push_back(item.path());
+    if (extension == ".glsl" || extension == ".vert" || extension == ".frag" || extension == ".comp")
+      files.push_back(item.path());
   }
   std::sort(files.begin(), files.end());
   std::string text;
@@ -44,12 +45,15 @@ std::string referenceKey(const Session& session, const ResolvedTechnique& techni
   const gl::ContextInfo info = gl::currentContextInfo();
   std::string plan;
   for (const PlanDecision& d : session.plan().decisions) plan += d.on ? '1' : '0';
-  return fmt::format("scene {}\nlight {}\ncamera {}\nsize {}x{}\ntechnique {} {}\nlibrary {}\nplan {}\nframework {}\nshaders {}\nrenderer {} {}\n",
-                     contentHash(session.scene()), writeObject(*lightTable(), &session.light()).dump(),
-                     writeObject(*cameraTable(), &session.camera()).dump(), session.outputSize().x, session.outputSize().y, technique.name(),
-                     technique.parametersJson().dump(), hashHex(readFile(technique.technique.registered->library)), plan, frameworkAbiTag(),
-                     hashHex(shaderText(installationDirectory() / "shaders") + shaderText(Registry::directory(*technique.technique.registered))),
-                     info.renderer, info.version);
+  return fmt::format(
+      "scene {}\nlight {}\ncamera {}\nsize {}x{}\ntechnique {} {}\nlibrary {}\nplan {}\nframework {}\nshaders {}\nrenderer {} "
+      "{}\n",
+      contentHash(session.scene()), writeObject(*lightTable(), &session.light()).dump(),
+      writeObject(*cameraTable(), &session.camera()).dump(), session.outputSize().x, session.outputSize().y, technique.name(),
+      technique.parametersJson().dump(), hashHex(readFile(technique.technique.registered->library)), plan, frameworkAbiTag(),
+      hashHex(shaderText(installationDirectory() / "shaders") +
+              shaderText(Registry::directory(*technique.technique.registered))),
+      info.renderer, info.version);
 }
 
 RenderedReference renderReference(Session& session, Registry& registry, const ReferenceRequest& request) {

@@ -24,15 +24,16 @@ void flagNamed(Scene& scene, const std::vector<std::string>& names, bool Instanc
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string nearest = nearestName(name, known);
-    throw InputError({{where.file, where.pointer, fmt::format("no node of the scene is named '{}'{}", name,
-                                                          nearest.empty() ? "" : "; did you mean '" + nearest + "'?")}});
+    throw InputError({{where.file, where.pointer,
+                       fmt::format("no node of the scene is named '{}'{}", name,
+                                   nearest.empty() ? "" : "; did you mean '" + nearest + "'?")}});
   }
 }
 
 /// Opens a technique and checks its parameters, which stand at `parametersAt` in the entry at `where`; null entry when that
 /// failed.
-ResolvedTechnique resolveTechnique(Registry& registry, const std::string& name, const Json& parameters, const Location& parametersAt,
-                                   const Location& where, Problems& problems) {
+ResolvedTechnique resolveTechnique(Registry& registry, const std::string& name, const Json& parameters,
+                                   const Location& parametersAt, const Location& where, Problems& problems) {
   ResolvedTechnique resolved;
   try {
     resolved.technique = registry.open(name);
@@ -47,11 +48,15 @@ ResolvedTechnique resolveTechnique(Registry& registry, const std::string& name, 
   return resolved;
 }
 
-Json objectOf(const std::shared_ptr<const Json>& json) { return json ? *json : Json::object(); }
+Json objectOf(const std::shared_ptr<const Json>& json) {
+  return json ? *json : Json::object();
+}
 
 }  // namespace
 
-Json ResolvedTechnique::parametersJson() const { return writeObject(*technique.entry->parameters, parameters.get()); }
+Json ResolvedTechnique::parametersJson() const {
+  return writeObject(*technique.entry->parameters, parameters.get());
+}
 
 std::string ResolvedTechnique::parametersText() const {
   const std::shared_ptr<void> defaults = technique.entry->makeParameters();
@@ -68,7 +73,8 @@ Scene loadScene(const SceneChoice& choice, const Location& where) {
   Scene scene;
   if (!choice.builtin.empty()) {
     const BuiltinScene* builtin = findBuiltinScene(choice.builtin);
-    if (builtin == nullptr) throw InputError({{where.file, where.pointer + "/builtin", "no built-in scene is named '" + choice.builtin + "'"}});
+    if (builtin == nullptr)
+      throw InputError({{where.file, where.pointer + "/builtin", "no built-in scene is named '" + choice.builtin + "'"}});
     scene = builtin->make(choice.parameters);
   } else {
     try {
@@ -104,14 +110,19 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
   run.sceneName = choice.builtin.empty() ? choice.file.filename().string() : choice.builtin;
   run.lights = config.lights.value_or(run.scene.lights);
   if (loaded && run.lights.empty()) {
-    problems.add(file, "/lights", fmt::format("the config names no light and {} has none; add \"lights\": [{{\"type\": \"spot\", ...}}]", run.sceneName));
+    problems.add(
+        file, "/lights",
+        fmt::format("the config names no light and {} has none; add \"lights\": [{{\"type\": \"spot\", ...}}]", run.sceneName));
   }
   run.camera = config.camera.value_or(run.scene.camera.value_or(Camera{}));
 
   const auto withRole = [&](TechniqueRole role, const std::optional<TechniqueChoice>& chosen, const std::string& key) {
-    if (chosen) return resolveTechnique(registry, chosen->technique, objectOf(chosen->parameters), chosen->where.child("parameters"), chosen->where, problems);
+    if (chosen)
+      return resolveTechnique(registry, chosen->technique, objectOf(chosen->parameters), chosen->where.child("parameters"),
+                              chosen->where, problems);
     if (const RegisteredTechnique* registered = registry.withRole(role)) {
-      return resolveTechnique(registry, registered->declaration.name, Json::object(), {file, "/" + key + "/parameters"}, {file, "/" + key}, problems);
+      return resolveTechnique(registry, registered->declaration.name, Json::object(), {file, "/" + key + "/parameters"},
+                              {file, "/" + key}, problems);
     }
     problems.add(file, "/" + key, fmt::format("no registered technique has the role of {}; name one", key));
     return ResolvedTechnique{};
@@ -122,14 +133,16 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
     const bool chosen = config.reference && config.reference->parameters && config.reference->parameters->contains("samples");
     if (samples != nullptr && !chosen) *samples = kReferenceSamples;
     if (samples != nullptr && *samples < 2) {
-      problems.add(file, "/reference/parameters/samples", "found 1; allowed: 2 or more, since the reference is rendered as two halves");
+      problems.add(file, "/reference/parameters/samples",
+                   "found 1; allowed: 2 or more, since the reference is rendered as two halves");
     }
   }
   run.baseline = withRole(TechniqueRole::floor, config.baseline, "baseline");
 
   for (const JobRequest& request : expandJobs(config, std::max<std::size_t>(run.lights.size(), 1))) {
     Problems found;
-    ResolvedTechnique technique = resolveTechnique(registry, request.technique, *request.parameters, request.where, config.techniques[request.entry].where, found);
+    ResolvedTechnique technique = resolveTechnique(registry, request.technique, *request.parameters, request.where,
+                                                   config.techniques[request.entry].where, found);
     problems.append(atTheirPlaces(found, request));
     run.jobs.push_back({request.light, std::move(technique)});
   }
@@ -141,7 +154,8 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
 std::vector<ResolvedRun> resolveRuns(const std::filesystem::path& path, Registry& registry, Problems& problems) {
   Problems found;
   RunConfig config = readRunConfig(path, found);
-  if (config.scenes.empty() && !found.empty()) config.scenes.emplace_back();  // said already; techniques are checked all the same
+  if (config.scenes.empty() && !found.empty())
+    config.scenes.emplace_back();  // said already; techniques are checked all the same
   std::vector<ResolvedRun> runs;
   for (std::size_t i = 0; i < config.scenes.size(); ++i) runs.push_back(resolveScene(config, i, registry, found));
   problems.append(found.unique());  // a wrong parameter is found for every scene, light and value of a sweep

@@ -125,23 +125,28 @@ double penumbraWidth(const Light& light, double nearestCaster, double farthestRe
 
 std::vector<VisibleReceiver> visibleReceivers(const Scene& scene, const std::vector<Bounds>& instanceBounds,
                                               const Camera& camera, double aspect) {
-  return receiversWithin(scene, instanceBounds, camera.position, frustumPlanes(camera, aspect));
+  std::vector<VisibleReceiver> visible;
+  visitReceiversWithin(scene, instanceBounds, camera.position, frustumPlanes(camera, aspect),
+                       [&](std::size_t instance, std::span<const glm::dvec3> points) {
+                         visible.push_back({instance, {points.begin(), points.end()}});
+                       });
+  return visible;
 }
 
-std::vector<VisibleReceiver> receiversWithin(const Scene& scene, const std::vector<Bounds>& instanceBounds,
-                                             const glm::dvec3& origin, std::span<const glm::dvec4> planes) {
-  std::vector<VisibleReceiver> within;
+void visitReceiversWithin(const Scene& scene, const std::vector<Bounds>& instanceBounds, const glm::dvec3& origin,
+                          std::span<const glm::dvec4> planes, const ReceiverVisitor& visit) {
+  std::vector<glm::dvec3> points;
+  points.reserve(16);
+  const auto add = [&](const glm::dvec3& p) {
+    const glm::dvec3 corner = p + origin;
+    if (std::find(points.begin(), points.end(), corner) == points.end()) points.push_back(corner);
+  };
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (!scene.instances[i].receives || instanceBounds[i].empty()) continue;
     Bounds relative;
     relative.add(instanceBounds[i].min - origin);
     relative.add(instanceBounds[i].max - origin);
-    VisibleReceiver receiver{i, {}};
-    const auto add = [&](const glm::dvec3& p) {
-      const glm::dvec3 corner = p + origin;
-      if (std::find(receiver.points.begin(), receiver.points.end(), corner) == receiver.points.end())
-        receiver.points.push_back(corner);
-    };
+    points.clear();
     switch (sideOf(relative, planes)) {
       case BoxSide::outside:
         continue;
@@ -154,9 +159,8 @@ std::vector<VisibleReceiver> receiversWithin(const Scene& scene, const std::vect
         for (const auto& face : part) std::for_each(face.begin(), face.end(), add);
       }
     }
-    if (!receiver.points.empty()) within.push_back(std::move(receiver));
+    if (!points.empty()) visit(i, points);
   }
-  return within;
 }
 
 SceneSurvey survey(const Scene& scene, const Light& light, const Camera& camera, glm::ivec2 outputSize) {

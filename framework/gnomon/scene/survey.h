@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -12,7 +13,7 @@
 
 namespace gnomon {
 
-/// The part of one receiver that matters, such as what the camera may see: its world box clipped to half-spaces.
+/// The part of one receiver that the camera may see: its world box clipped to the view frustum.
 struct VisibleReceiver {
   std::size_t instance = 0;
   std::vector<glm::dvec3> points;  ///< corners of the convex clipped box, world coordinates
@@ -22,9 +23,12 @@ struct VisibleReceiver {
 std::vector<VisibleReceiver> visibleReceivers(const Scene& scene, const std::vector<Bounds>& instanceBounds,
                                               const Camera& camera, double aspect);
 
-/// Receivers inside all half-spaces n.x + d >= 0 (unit normals, x relative to `origin`), conservatively.
-std::vector<VisibleReceiver> receiversWithin(const Scene& scene, const std::vector<Bounds>& instanceBounds,
-                                             const glm::dvec3& origin, std::span<const glm::dvec4> planes);
+/// Corners of the convex part of one receiver's world box that lies within, world coordinates; valid during the call.
+using ReceiverVisitor = std::function<void(std::size_t instance, std::span<const glm::dvec3> points)>;
+
+/// Visits the receivers inside all half-spaces n.x + d >= 0 (unit normals, x relative to `origin`), conservatively.
+void visitReceiversWithin(const Scene& scene, const std::vector<Bounds>& instanceBounds, const glm::dvec3& origin,
+                          std::span<const glm::dvec4> planes, const ReceiverVisitor& visit);
 
 struct SceneSurvey {
   Bounds bounds;                       ///< of everything

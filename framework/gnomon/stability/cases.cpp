@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 #include "gnomon/scene/builtin.h"
@@ -77,7 +78,7 @@ class Stage {
     return *this;
   }
   glm::dvec3 moved(const glm::dvec3& p) const { return glm::dvec3(world_ * glm::dvec4(p, 1.0)); }
-  double scale() const { return world_[0][0]; }
+  double scale() const { return glm::length(glm::dvec3(world_[0])); }
 
   glm::dmat4 world_;
   SessionSetup setup_;
@@ -112,9 +113,11 @@ SessionSetup smallScale() {
       .done();
 }
 
-/// The light lies in the floor's plane, half of its source below it, and shines along the floor at a wall.
+/// The light lies in the floor's plane, half of its source below it, and shines along the floor at a wall. The world is turned,
+/// so that N.L of the floor is not 0 but rounding: about half of its pixels are in the receiver mask.
 SessionSetup lightInPlane() {
-  return yard("light_in_plane")
+  const glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(0.3, 1.0, 0.5)));
+  return yard("light_in_plane", turned)
       .box({-3.0, 0.0, -3.2}, {3.0, 2.5, -3.0})
       .spot({0.0, 0.0, 6.0}, {0.0, 0.0, 0.0}, 40.0, 0.2)
       .camera({2.0, 3.0, 6.0}, {0.0, 0.6, -1.0})
@@ -169,12 +172,12 @@ SessionSetup hugeSource() {
       .done();
 }
 
-/// A cone of 12 degrees on a floor that reaches far beyond it; a blocker on one side only, which a map that repeats, or a
-/// kernel that does, would bring to the other side.
+/// A cone of 12 degrees on a floor that reaches far beyond it; a blocker across the map's border on one side only, which a
+/// kernel that wraps around would bring to the other side.
 SessionSetup outsideMap() {
   return Stage("outside_map")
       .floor(4.0)
-      .box({-0.9, 0.6, -0.7}, {-0.5, 0.8, 0.7})
+      .box({-1.4, 0.6, -0.7}, {-0.5, 0.8, 0.7})
       .spot({0.0, 6.0, 0.0}, {0.0, 0.0, 0.0}, 12.0)
       .camera({0.5, 3.0, 3.2}, {0.0, 0.0, 0.0})
       .done();
@@ -188,6 +191,11 @@ SessionSetup roof() {
       .spot({0.0, 6.0, 0.0}, {0.0, 0.0, 0.0}, 30.0)
       .camera({7.0, 4.5, 1.0}, {0.0, 1.5, 0.0})
       .done();
+}
+
+/// A bare floor under a wide cone, and a normal offset of 32 texels: it lifts far receivers through the light's own plane.
+SessionSetup liftedFloor() {
+  return Stage("lifted_floor").floor(60.0).spot({0.0, 6.0, 0.0}, {0.0, 0.0, 0.0}, 85.0).camera({30.0, 45.0, 60.0}, {}).done();
 }
 
 SessionSetup empty() {
@@ -237,6 +245,13 @@ const std::vector<Case>& cases() {
        {},
        {},
        kWiderThanMap},
+      {"normal_offset_behind_light",
+       "A normal offset so large that it lifts receivers behind the light: nothing blocks, so nothing may be dark.",
+       liftedFloor,
+       {{"bias.normal", "32"}},
+       {},
+       {},
+       "there is only a floor"},
       {"empty_scene",
        "No triangle: nothing to fit a map to, nothing to divide by.",
        empty,

@@ -14,6 +14,7 @@ constexpr double kUlp = 1.1920929e-7;
 constexpr double kRoundings = 4.0 * kUlp;  // as graph/types.cpp and depth_map.glsl state it
 constexpr double kSmallestCosine = 2e-6;   // twice where depth_map.glsl stops to follow a receiver's plane
 constexpr double kExactly = 1.0 + 1e-9;    // the bias may equal what is needed
+constexpr double kSmallOffset = 0.1;       // of the depth: a normal offset below this moves a receiver as to first order
 constexpr double kInFrontOfLight = 1e-12;  // of far
 
 }  // namespace
@@ -21,16 +22,20 @@ constexpr double kInFrontOfLight = 1e-12;  // of far
 /// Stored depth is z = a / d + b (perspective) or a d + b; over a plane it is linear in the map, so all comparisons are with
 /// planes in space. Gradients and coordinates in the map are tangents (perspective) or metres.
 struct MapOracle::Beam {
-  glm::dvec3 receiver;   ///< x, y, depth
-  glm::dvec2 point;      ///< the receiver in the map
-  glm::dvec2 low, high;  ///< centres of the texels that may be read
+  glm::dvec3 receiver;       ///< x, y, depth
+  glm::dvec2 point;          ///< the receiver in the map
+  glm::dvec2 low, high;      ///< centres of the texels that may be read
+  glm::dvec2 rounding{0.0};  ///< texels by which the receiver's place in the map may be off
+  double widest = 0.0;       ///< a texel's larger extent at the receiver, metres
+  double offset = 0.0;       ///< metres that the receiver may be moved along its normal
   double a = 0.0, b = 0.0;
   double z = 0.0;
   glm::dvec2 gradient{0.0};  ///< of the compared depth
   double lowest = 0.0;       ///< what a clamped correction may take from the compared depth
   double highest = 0.0;      ///< what it may add
   double leastBias = 0.0, mostBias = 0.0;
-  double blur = 0.0;  ///< of other surfaces' depths against the receiver's, by rounding
+  double blur = 0.0;       ///< of other surfaces' depths against the receiver's, by rounding
+  bool depthKnown = true;  ///< what is compared can be told
   bool ownPlaneHolds = false;
   bool tapsInside = false;
 };
@@ -51,16 +56,50 @@ glm::dvec3 MapOracle::inLight(const glm::dvec3& world) const {
 }
 
 Certainty MapOracle::judge(const ReceiverPoint& receiver) const {
-  const Facts& f = facts_;
   Beam beam;
   beam.receiver = inLight(receiver.position);
   const double d = beam.receiver.z;
-  if (!(f.farDepth > f.nearDepth) || !(d > f.nearDepth) || !(d < f.farDepth)) return Certainty::open;
+  if (!(facts_.farDepth > facts_.nearDepth) || !(d > facts_.nearDepth) || !(d < facts_.farDepth)) return Certainty::open;
+  beam.point = glm::dvec2(beam.receiver) / (facts_.perspective ? d : 1.0);
+  placeSquare(receiver, beam);
+  compare(receiver, beam);
+  if (beam.low.x > beam.high.x || beam.low.y > beam.high.y || nothingNearer(receiver, beam)) return Certainty::lit;
+  return allNearer(receiver, beam) ? Certainty::dark : Certainty::open;
+}
+
+/// Which texels may be read: within r of the receiver, and of the map.
+void MapOracle::placeSquare(const ReceiverPoint& receiver, Beam& beam) const {
+  const Facts& f = facts_;
+  const double d = beam.receiver.z;
+  const glm::dvec2 footprint = texelFootprint(f, d);
+  beam.widest = std::max(footprint.x, footprint.y);
+  const double narrowest = std::min(footprint.x, footprint.y);
+  // Off its axis a perspective map sees a shift along the axis too.
+  const glm::dvec2 oblique = f.perspective ? 1.0 + glm::abs(beam.point) : glm::dvec2(1.0);
+  beam.offset = f.biasNormal * beam.widest;
+  beam.rounding = oblique * (receiver.rounding + beam.offset) / narrowest + kRoundings * std::max(f.mapSize.x, f.mapSize.y);
+  const glm::dvec2 half = f.texel * glm::dvec2(f.mapSize) * 0.5;
+  const glm::dvec2 radius = (f.filterRadiusTexels + 0.5 + beam.rounding) * f.texel;
+  const glm::dvec2 centres = half - (0.5 - beam.rounding) * f.texel;
+  beam.low = glm::max(beam.point - radius, plane_.centre - centres);
+  beam.high = glm::min(beam.point + radius, plane_.centre + centres);
+  const glm::dvec2 reach = glm::abs(beam.point - plane_.centre) + (f.filterRadiusTexels + beam.rounding) * f.texel;
+  beam.tapsInside = reach.x < half.x && reach.y < half.y;
+  if (f.perspective && beam.offset > kSmallOffset * d) {  // the receiver may be moved anywhere, even behind the light
+    beam.low = plane_.centre - half;
+    beam.high = plane_.centre + half;
+    beam.depthKnown = false;
+  }
+}
+
+/// What is compared there, and by how much it is moved towards the light, as the facts state it.
+void MapOracle::compare(const ReceiverPoint& receiver, Beam& beam) const {
+  const Facts& f = facts_;
+  const double d = beam.receiver.z;
   const double range = f.farDepth - f.nearDepth;
   beam.a = f.perspective ? f.nearDepth * f.farDepth / range : -1.0 / range;
   beam.b = f.perspective ? -f.nearDepth / range : f.farDepth / range;
   beam.z = f.perspective ? beam.a / d + beam.b : beam.a * d + beam.b;
-  beam.point = glm::dvec2(beam.receiver) / (f.perspective ? d : 1.0);
   const double rate = f.perspective ? beam.a / (d * d) : -beam.a;
 
   // The receiver's plane n.q = c in light axes, q = (x, y, -d): its depth's gradient in the map.
@@ -68,36 +107,24 @@ Certainty MapOracle::judge(const ReceiverPoint& receiver) const {
                      glm::dot(plane_.axes.z, receiver.normal));
   const glm::dvec3 q(beam.receiver.x, beam.receiver.y, -d);
   const double cosine = f.perspective ? -glm::dot(n, q) / glm::length(q) : n.z;
-  if (!(cosine > kSmallestCosine)) return Certainty::open;
+  if (!(cosine > kSmallestCosine)) beam.depthKnown = false;
+  if (!beam.depthKnown) {
+    // Seen edge-on, or moved anywhere: only where the map holds nothing but the receiver's own plane is the answer known.
+    beam.ownPlaneHolds = true;
+    return;
+  }
   const glm::dvec2 gradient = beam.a * glm::dvec2(n) / (f.perspective ? glm::dot(n, q) : n.z);
   const glm::dvec2 slope = glm::abs(gradient * f.texel);  // a texel
   const double steepest = std::max(slope.x, slope.y);
-
-  // Which texels: within r of the receiver, and of the map.
-  const glm::dvec2 footprint = texelFootprint(f, d);
-  const double widest = std::max(footprint.x, footprint.y);
-  const double narrowest = std::min(footprint.x, footprint.y);
-  const glm::dvec2 oblique = f.perspective ? 1.0 + glm::abs(beam.point) : glm::dvec2(1.0);
-  const glm::dvec2 rounding = oblique * (receiver.rounding + f.biasNormal * widest) / narrowest +
-                              kRoundings * std::max(f.mapSize.x, f.mapSize.y);  // texels
-  const glm::dvec2 half = f.texel * glm::dvec2(f.mapSize) * 0.5;
-  const glm::dvec2 radius = (f.filterRadiusTexels + 0.5 + rounding) * f.texel;
-  const glm::dvec2 centres = half - (0.5 - rounding) * f.texel;
-  beam.low = glm::max(beam.point - radius, plane_.centre - centres);
-  beam.high = glm::min(beam.point + radius, plane_.centre + centres);
-  const glm::dvec2 reach = glm::abs(beam.point - plane_.centre) + (f.filterRadiusTexels + rounding) * f.texel;
-  beam.tapsInside = reach.x < half.x && reach.y < half.y;
-
-  // What is compared there, and by how much it is moved towards the light (shaders/gnomon/depth_map.glsl).
   const double quantum = depthQuantum(f, d) * rate;
-  const double limit = f.biasLimit * widest * rate;
-  const double needed = slope.x * (f.filterRadiusTexels + 0.5) + slope.y * (f.filterRadiusTexels + 0.5);
-  const double correction = f.biasSlope * steepest + f.biasCurvature * f.filterRadiusTexels * widest * rate;
-  const double roundingBias = receiver.rounding * rate + (slope.x + slope.y) * std::max(rounding.x, rounding.y);
+  const double limit = f.biasLimit * beam.widest * rate;
+  const double needed = (slope.x + slope.y) * (f.filterRadiusTexels + 0.5);
+  const double correction = f.biasSlope * steepest + f.biasCurvature * f.filterRadiusTexels * beam.widest * rate;
+  const double rounding = receiver.rounding * rate + (slope.x + slope.y) * std::max(beam.rounding.x, beam.rounding.y);
   beam.leastBias = f.biasConstant * quantum + std::min(correction, limit);
-  beam.mostBias = f.biasConstant * quantum + std::min(correction + 2.0 * roundingBias, limit) + f.biasNormal * widest * rate;
-  beam.blur = quantum + roundingBias;
-  const double across = needed + (slope.x + slope.y) * std::max(rounding.x, rounding.y);
+  beam.mostBias = f.biasConstant * quantum + std::min(correction + 2.0 * rounding, limit);
+  beam.blur = quantum + rounding + beam.offset * rate;
+  const double across = needed + (slope.x + slope.y) * std::max(beam.rounding.x, beam.rounding.y);
   if (!f.receiverPlane) {
     beam.ownPlaneHolds = needed <= std::min(correction, limit) * kExactly;
   } else if (across <= limit) {
@@ -108,9 +135,6 @@ Certainty MapOracle::judge(const ReceiverPoint& receiver) const {
     beam.highest = limit;
     beam.ownPlaneHolds = across - limit <= std::min(correction, limit);
   }
-
-  if (beam.low.x > beam.high.x || beam.low.y > beam.high.y || nothingNearer(receiver, beam)) return Certainty::lit;
-  return allNearer(receiver, beam) ? Certainty::dark : Certainty::open;
 }
 
 namespace {
@@ -138,8 +162,9 @@ std::array<HalfSpace, 6> MapOracle::beamAnd(const Beam& beam, const HalfSpace& n
 
 bool MapOracle::nothingNearer(const ReceiverPoint& receiver, const Beam& beam) const {
   const bool p = facts_.perspective;
-  const std::array<HalfSpace, 6> within = beamAnd(
-      beam, nearerThan(p, beam.a, beam.b, beam.z + beam.lowest + beam.leastBias - beam.blur, beam.gradient, beam.point));
+  const double threshold = beam.z + beam.lowest + beam.leastBias - beam.blur;
+  const std::array<HalfSpace, 6> within =
+      beamAnd(beam, beam.depthKnown ? nearerThan(p, beam.a, beam.b, threshold, beam.gradient, beam.point) : HalfSpace{});
   const std::span<const HalfSpace> sides(within.data(), 5);
   const double contact = 4.0 * receiver.rounding;
   const auto height = [&](const glm::dvec3& world) { return std::abs(glm::dot(receiver.normal, world - receiver.position)); };
@@ -155,7 +180,7 @@ bool MapOracle::nothingNearer(const ReceiverPoint& receiver, const Beam& beam) c
 }
 
 bool MapOracle::allNearer(const ReceiverPoint& receiver, const Beam& beam) const {
-  if (!beam.tapsInside) return false;  // a tap outside the map is lit
+  if (!beam.tapsInside || !beam.depthKnown) return false;  // a tap outside the map is lit
   const double threshold = beam.z + beam.highest + beam.mostBias + beam.blur;
   // Depths nearer than near are stored as 1: nothing exceeds that.
   const glm::dvec2 rise = glm::abs(beam.gradient) * glm::max(beam.high - beam.point, beam.point - beam.low);

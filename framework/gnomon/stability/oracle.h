@@ -65,6 +65,8 @@ class MapOracle {
 
  private:
   struct Beam;
+  void placeSquare(const ReceiverPoint& receiver, Beam& beam) const;
+  void compare(const ReceiverPoint& receiver, Beam& beam) const;
   std::array<HalfSpace, 6> beamAnd(const Beam& beam, const HalfSpace& nearer) const;
   bool nothingNearer(const ReceiverPoint& receiver, const Beam& beam) const;
   bool allNearer(const ReceiverPoint& receiver, const Beam& beam) const;

@@ -33,7 +33,9 @@ struct PluginEntries {
 template <class T, class P>
 Entry entry(std::string name, const ParameterTable<P>& table, EntryNotes notes) {
   return {std::move(name), std::move(notes), table.table(), [] { return std::make_shared<P>(); },
-          [](const void* parameters) -> std::unique_ptr<Technique> { return std::make_unique<T>(*static_cast<const P*>(parameters)); }};
+          [](const void* parameters) -> std::unique_ptr<Technique> {
+            return std::make_unique<T>(*static_cast<const P*>(parameters));
+          }};
 }
 
 }  // namespace gnomon

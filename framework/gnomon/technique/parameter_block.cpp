@@ -28,15 +28,22 @@ struct Layout {
 /// std140 (OpenGL 4.5 core, 7.6.2.2).
 Layout layoutOf(const Field& field) {
   switch (field.type) {
-    case FieldType::boolean: return {"bool", 4, 4};
+    case FieldType::boolean:
+      return {"bool", 4, 4};
     case FieldType::integer:
-    case FieldType::choice: return {"int", 4, 4};
+    case FieldType::choice:
+      return {"int", 4, 4};
     case FieldType::real32:
-    case FieldType::real64: return {"float", 4, 4};
-    case FieldType::size: return {"ivec2", 8, 8};
-    case FieldType::vector2: return {"vec2", 8, 8};
-    case FieldType::vector3: return {"vec3", 16, 12};
-    default: throw Error(fmt::format("parameter '{}': its type cannot be a uniform", field.name));
+    case FieldType::real64:
+      return {"float", 4, 4};
+    case FieldType::size:
+      return {"ivec2", 8, 8};
+    case FieldType::vector2:
+      return {"vec2", 8, 8};
+    case FieldType::vector3:
+      return {"vec3", 16, 12};
+    default:
+      throw Error(fmt::format("parameter '{}': its type cannot be a uniform", field.name));
   }
 }
 
@@ -47,15 +54,30 @@ void put(std::byte* to, const T& value) {
 
 void putValue(std::byte* to, const Field& field, const void* value) {
   switch (field.type) {
-    case FieldType::boolean: put(to, static_cast<int>(*static_cast<const bool*>(value))); break;
+    case FieldType::boolean:
+      put(to, static_cast<int>(*static_cast<const bool*>(value)));
+      break;
     case FieldType::integer:
-    case FieldType::choice: put(to, *static_cast<const int*>(value)); break;
-    case FieldType::real32: put(to, *static_cast<const float*>(value)); break;
-    case FieldType::real64: put(to, static_cast<float>(*static_cast<const double*>(value))); break;
-    case FieldType::size: put(to, *static_cast<const glm::ivec2*>(value)); break;
-    case FieldType::vector2: put(to, glm::vec2(*static_cast<const glm::dvec2*>(value))); break;
-    case FieldType::vector3: put(to, glm::vec3(*static_cast<const glm::dvec3*>(value))); break;
-    default: break;
+    case FieldType::choice:
+      put(to, *static_cast<const int*>(value));
+      break;
+    case FieldType::real32:
+      put(to, *static_cast<const float*>(value));
+      break;
+    case FieldType::real64:
+      put(to, static_cast<float>(*static_cast<const double*>(value)));
+      break;
+    case FieldType::size:
+      put(to, *static_cast<const glm::ivec2*>(value));
+      break;
+    case FieldType::vector2:
+      put(to, glm::vec2(*static_cast<const glm::dvec2*>(value)));
+      break;
+    case FieldType::vector3:
+      put(to, glm::vec3(*static_cast<const glm::dvec3*>(value)));
+      break;
+    default:
+      break;
   }
 }
 
@@ -64,7 +86,8 @@ void putValue(std::byte* to, const Field& field, const void* value) {
 std::string parameterBlockText(const FieldTable& table) {
   std::string members;
   for (const Field& field : table.fields()) {
-    if (field.binding == Binding::uniform) members += fmt::format("  {} {};  // {}\n", layoutOf(field).type, shaderName(field.name), field.meaning);
+    if (field.binding == Binding::uniform)
+      members += fmt::format("  {} {};  // {}\n", layoutOf(field).type, shaderName(field.name), field.meaning);
   }
   if (members.empty()) return "";
   return "layout(std140) uniform Parameters {\n" + members + "};\n";
@@ -92,11 +115,18 @@ std::vector<Constant> parameterConstants(const FieldTable& table, const void* pa
     const void* value = field.find(parameters);
     if (value == nullptr) continue;
     switch (field.type) {
-      case FieldType::boolean: constants.push_back({name, *static_cast<const bool*>(value)}); break;
+      case FieldType::boolean:
+        constants.push_back({name, *static_cast<const bool*>(value)});
+        break;
       case FieldType::integer:
-      case FieldType::choice: constants.push_back({name, *static_cast<const int*>(value)}); break;
-      case FieldType::real32: constants.push_back({name, *static_cast<const float*>(value)}); break;
-      default: throw Error(fmt::format("parameter '{}': its type cannot be a shader constant", field.name));
+      case FieldType::choice:
+        constants.push_back({name, *static_cast<const int*>(value)});
+        break;
+      case FieldType::real32:
+        constants.push_back({name, *static_cast<const float*>(value)});
+        break;
+      default:
+        throw Error(fmt::format("parameter '{}': its type cannot be a shader constant", field.name));
     }
   }
   return constants;

@@ -24,7 +24,9 @@ bool inside(const std::string& bytes, std::size_t offset, std::size_t size) {
   return offset <= bytes.size() && size <= bytes.size() - offset;
 }
 
-constexpr std::size_t padded(std::size_t bytes) { return (bytes + 3) & ~std::size_t{3}; }
+constexpr std::size_t padded(std::size_t bytes) {
+  return (bytes + 3) & ~std::size_t{3};
+}
 
 /// Walks the notes of one segment for ours.
 std::string tagInNotes(const std::string& bytes, std::size_t offset, std::size_t size) {
@@ -49,8 +51,8 @@ std::string tagInNotes(const std::string& bytes, std::size_t offset, std::size_t
 std::string pluginAbiTag(const std::filesystem::path& library) {
   const std::string bytes = readFile(library);
   Elf64_Ehdr header{};
-  if (!readAt(bytes, 0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64 ||
-      header.e_type != ET_DYN) {
+  if (!readAt(bytes, 0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
+      header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_type != ET_DYN) {
     throw Error(library.string() + " is not a 64-bit ELF shared object");
   }
   // The loader maps segments without asking whether the file reaches that far: touching what was cut off ends the process.
@@ -66,6 +68,8 @@ std::string pluginAbiTag(const std::filesystem::path& library) {
   return tag;
 }
 
-std::string frameworkAbiTag() { return GNOMON_ABI_TAG; }
+std::string frameworkAbiTag() {
+  return GNOMON_ABI_TAG;
+}
 
 }  // namespace gnomon

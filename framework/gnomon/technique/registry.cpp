@@ -43,7 +43,8 @@ Registry::Registry(const std::vector<std::filesystem::path>& directories) {
   for (const auto& directory : directories) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(directory, ignored)) {
-      problems_.add(directory.string(), "", "is not a folder; technique folders hold technique JSON files beside their libraries");
+      problems_.add(directory.string(), "",
+                    "is not a folder; technique folders hold technique JSON files beside their libraries");
       continue;
     }
     for (const auto& path : jsonFiles(directory)) {
@@ -53,13 +54,15 @@ Registry::Registry(const std::vector<std::filesystem::path>& directories) {
       if (!found.empty()) continue;
       const std::filesystem::path library = path.parent_path() / (file.library + ".so");
       if (!std::filesystem::is_regular_file(library, ignored)) {
-        problems_.add(path.string(), "/library",
-                      fmt::format("there is no {} beside this file; build the plugin, or correct the name", library.filename().string()));
+        problems_.add(
+            path.string(), "/library",
+            fmt::format("there is no {} beside this file; build the plugin, or correct the name", library.filename().string()));
         continue;
       }
       if (std::filesystem::is_symlink(library, ignored)) {
-        problems_.add(path.string(), "/library", fmt::format("{} is a symbolic link; libraries are never followed out of their folder",
-                                                             library.filename().string()));
+        problems_.add(path.string(), "/library",
+                      fmt::format("{} is a symbolic link; libraries are never followed out of their folder",
+                                  library.filename().string()));
         continue;
       }
       for (const TechniqueDeclaration& declaration : file.techniques) {
@@ -67,7 +70,8 @@ Registry::Registry(const std::vector<std::filesystem::path>& directories) {
         if (!isNew) {
           twice.insert(declaration.name);
           problems_.add(path.string(), "/techniques/" + declaration.name,
-                        fmt::format("'{}' is registered by {} too; neither counts until one is renamed", declaration.name, first->second.string()));
+                        fmt::format("'{}' is registered by {} too; neither counts until one is renamed", declaration.name,
+                                    first->second.string()));
           continue;
         }
         techniques_.push_back({declaration, path, library});
@@ -75,7 +79,8 @@ Registry::Registry(const std::vector<std::filesystem::path>& directories) {
     }
   }
   std::erase_if(techniques_, [&](const RegisteredTechnique& t) { return twice.contains(t.declaration.name); });
-  std::sort(techniques_.begin(), techniques_.end(), [](const auto& a, const auto& b) { return a.declaration.name < b.declaration.name; });
+  std::sort(techniques_.begin(), techniques_.end(),
+            [](const auto& a, const auto& b) { return a.declaration.name < b.declaration.name; });
 }
 
 // Libraries stay open until the process ends: unloading one whose code or type infos are still referenced would crash.
@@ -107,13 +112,16 @@ OpenTechnique Registry::open(const std::string& name) {
     // The file that should register it may be broken: its own problem says more than "unknown".
     std::vector<Problem> related;
     for (const Problem& problem : problems_.list()) {
-      const bool names = problem.pointer == "/techniques/" + name || problem.file.find("/" + name + ".json") != std::string::npos;
+      const bool names =
+          problem.pointer == "/techniques/" + name || problem.file.find("/" + name + ".json") != std::string::npos;
       if (names) related.push_back(problem);
     }
     if (!related.empty()) throw InputError(related);
     const std::string nearest = nearestName(name, names());
-    throw InputError({{"", "", fmt::format("no technique is registered as '{}'{}", name,
-                                           nearest.empty() ? "; `gnomon list` shows those that are" : "; did you mean '" + nearest + "'?")}});
+    throw InputError(
+        {{"", "",
+          fmt::format("no technique is registered as '{}'{}", name,
+                      nearest.empty() ? "; `gnomon list` shows those that are" : "; did you mean '" + nearest + "'?")}});
   }
   const std::filesystem::path& path = registered->library;
   const auto fail = [&](const std::string& message) { throw InputError({{registered->file.string(), "/library", message}}); };
@@ -126,8 +134,9 @@ OpenTechnique Registry::open(const std::string& name) {
       fail(error.what());
     }
     if (tag != frameworkAbiTag()) {
-      fail(fmt::format("{} was built for another framework: its tag is '{}', this one's is '{}'; rebuild it. None of its code was run",
-                       path.filename().string(), tag.empty() ? "none" : tag, frameworkAbiTag()));
+      fail(fmt::format(
+          "{} was built for another framework: its tag is '{}', this one's is '{}'; rebuild it. None of its code was run",
+          path.filename().string(), tag.empty() ? "none" : tag, frameworkAbiTag()));
     }
     auto opened = std::make_unique<Library>();
     opened->handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -145,11 +154,13 @@ OpenTechnique Registry::open(const std::string& name) {
   }
   std::string list;
   for (const std::string& o : offered) list += (list.empty() ? "" : ", ") + o;
-  throw InputError({{registered->file.string(), "/techniques/" + name + "/entry",
-                     fmt::format("{} has no entry '{}'; it has {}", path.filename().string(), registered->declaration.entry, list)}});
+  throw InputError(
+      {{registered->file.string(), "/techniques/" + name + "/entry",
+        fmt::format("{} has no entry '{}'; it has {}", path.filename().string(), registered->declaration.entry, list)}});
 }
 
-std::shared_ptr<void> Registry::parameters(const OpenTechnique& technique, const Json& overrides, const Location& where, Problems& problems) {
+std::shared_ptr<void> Registry::parameters(const OpenTechnique& technique, const Json& overrides, const Location& where,
+                                           Problems& problems) {
   std::shared_ptr<void> values = technique.entry->makeParameters();
   const RegisteredTechnique& registered = *technique.registered;
   const Json preset = Json::parse(registered.declaration.parametersJsonText, nullptr, false);

@@ -48,7 +48,8 @@ class Registry {
   OpenTechnique open(const std::string& name);
 
   /// Defaults, then the JSON file's preset, then `overrides`. Faults go to `problems` under `where`.
-  std::shared_ptr<void> parameters(const OpenTechnique& technique, const Json& overrides, const Location& where, Problems& problems);
+  std::shared_ptr<void> parameters(const OpenTechnique& technique, const Json& overrides, const Location& where,
+                                   Problems& problems);
 
   /// Folder of the technique's shaders.
   static std::filesystem::path directory(const RegisteredTechnique& technique) { return technique.file.parent_path(); }

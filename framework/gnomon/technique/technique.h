@@ -28,15 +28,15 @@ struct GBuffer {
 /// What holds while the structure holds.
 struct Frame {
   glm::ivec2 size{1, 1};
-  Light light;             ///< its kind and shape; its pose may change without set-up
+  Light light;  ///< its kind and shape; its pose may change without set-up
   GBuffer gbuffer;
   int maxTextureSize = 0;  ///< of this driver
 };
 
 /// Whether and how a technique can serve here.
 struct Support {
-  std::string refusal;           ///< empty: supported; else why not, and what to do
-  std::vector<Effect> ignored;   ///< called-for effects that it will not reproduce
+  std::string refusal;          ///< empty: supported; else why not, and what to do
+  std::vector<Effect> ignored;  ///< called-for effects that it will not reproduce
 
   static Support refused(std::string reason) { return {std::move(reason), {}}; }
   static Support ignoring(std::vector<Effect> effects) { return {{}, std::move(effects)}; }
@@ -44,8 +44,9 @@ struct Support {
 };
 
 struct Outputs {
-  Texture visibility;                 ///< r16f or r32f, the output's size, V in [0,1]; 1 outside the receiver mask
-  std::optional<Texture> admissible = {};  ///< r8: 1 where a technique claims to be valid; reported apart, never shrinks the mask
+  Texture visibility;  ///< r16f or r32f, the output's size, V in [0,1]; 1 outside the receiver mask
+  std::optional<Texture> admissible =
+      {};  ///< r8: 1 where a technique claims to be valid; reported apart, never shrinks the mask
 };
 
 class Technique {
