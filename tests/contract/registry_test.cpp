@@ -67,6 +67,13 @@ TEST(Registration, LibraryIsAPlainName) {
   }
 }
 
+TEST(Registration, AFolderNamedTwiceIsReadOnce) {
+  const PluginFolder plugin("trace");
+  const Registry registry({plugin.path(), plugin.path() / "."});
+  EXPECT_THAT(registry.names(), ElementsAre("trace"));
+  EXPECT_TRUE(registry.problems().empty());
+}
+
 TEST(Registration, OfANameThatTwoFilesRegisterNeitherCounts) {
   const PluginFolder one("trace");
   const PluginFolder two("trace");

@@ -102,7 +102,7 @@ struct Facts {
   bool readsMap = false;       ///< the rest of the map's figures hold
   bool perspective = true;     ///< texel extents grow with depth
   glm::dvec2 texel{0.0, 0.0};  ///< a map texel's extent: metres per metre of light depth, or metres (directional)
-  double nearDepth = 0.0;      ///< metres along the light's axis
+  double nearDepth = 0.0;  ///< metres along the light's axis from MapPlane's origin: the light, or the middle of all receivers
   double farDepth = 0.0;
   double depthStep = 0.0;  ///< quantum of the stored depth: absolute, or relative to it for float formats
   bool floatDepth = false;

@@ -10,9 +10,9 @@ namespace {
 
 /// Block View, std140.
 struct ViewBlock {
-  glm::mat4 clip;   ///< world axes relative to the camera -> clip
-  glm::vec4 size;   ///< output width, height
-  glm::vec4 look;   ///< xyz: unit view direction (world axes); w: 1 orthographic
+  glm::mat4 clip;  ///< world axes relative to the camera -> clip
+  glm::vec4 size;  ///< output width, height
+  glm::vec4 look;  ///< xyz: unit view direction (world axes); w: 1 orthographic
 };
 
 /// Block LightView, std140. Everything in world axes, relative to the camera.
@@ -32,9 +32,11 @@ ViewBlock viewBlock(const FrameInputs& frame) {
 
 LightViewBlock lightViewBlock(const FrameInputs& frame) {
   const LightFrame axes = lightFrame(frame.light);
-  const double cosine = frame.light.coneHalfAngleDegrees >= 90.0 ? 0.0 : std::cos(glm::radians(frame.light.coneHalfAngleDegrees));
+  const double cosine =
+      frame.light.coneHalfAngleDegrees >= 90.0 ? 0.0 : std::cos(glm::radians(frame.light.coneHalfAngleDegrees));
   return {glm::vec4(glm::vec3(axes.origin - frame.camera.position), static_cast<float>(frame.light.type)),
-          glm::vec4(glm::vec3(axes.z), static_cast<float>(cosine)), glm::vec4(static_cast<float>(frame.light.intensity), 0, 0, 0)};
+          glm::vec4(glm::vec3(axes.z), static_cast<float>(cosine)),
+          glm::vec4(static_cast<float>(frame.light.intensity), 0, 0, 0)};
 }
 
 }  // namespace
@@ -48,15 +50,19 @@ SessionPasses sessionPasses(GraphBuilder& graph, glm::ivec2 size) {
   const DrawList visible = graph.drawList("visible instances");
   const auto everything = std::make_shared<std::vector<std::uint8_t>>();  // flags: kept, so that frames allocate nothing
 
-  graph.cpu("view", {.inputs = {Input::camera, Input::geometry}, .buffers = {passes.view}, .draws = {visible}, .run = [=](CpuContext& context) {
+  graph.cpu("view", {.inputs = {Input::camera, Input::geometry},
+                     .buffers = {passes.view},
+                     .draws = {visible},
+                     .run = [=](CpuContext& context) {
                        const FrameInputs& frame = context.frame();
                        context.writeBlock(passes.view, viewBlock(frame));
                        everything->assign(frame.scene.instances.size(), 1);
                        context.draw(visible, *everything, frame.camera.position);
                      }});
-  graph.cpu("light view", {.inputs = {Input::camera, Input::light}, .buffers = {passes.lightView}, .run = [=](CpuContext& context) {
-                             context.writeBlock(passes.lightView, lightViewBlock(context.frame()));
-                           }});
+  graph.cpu("light view",
+            {.inputs = {Input::camera, Input::light}, .buffers = {passes.lightView}, .run = [=](CpuContext& context) {
+               context.writeBlock(passes.lightView, lightViewBlock(context.frame()));
+             }});
 
   GBuffer& g = passes.gbuffer;
   g.position = graph.texture("position", {size, Format::rgba32f});
@@ -81,7 +87,8 @@ SessionPasses sessionPasses(GraphBuilder& graph, glm::ivec2 size) {
 }
 
 Texture shadingPass(GraphBuilder& graph, Texture visibility) {
-  return graph.fullscreen("shading", {.shader = "gnomon/shading.frag", .reads = {{"visibilityMap", visibility}}, .format = Format::rgba16f});
+  return graph.fullscreen(
+      "shading", {.shader = "gnomon/shading.frag", .reads = {{"visibilityMap", visibility}}, .format = Format::rgba16f});
 }
 
 }  // namespace gnomon

@@ -40,6 +40,7 @@ struct Registry::Library {
 Registry::Registry(const std::vector<std::filesystem::path>& directories) {
   std::map<std::string, std::filesystem::path> firstFile;
   std::set<std::string> twice;
+  std::set<std::filesystem::path> seenFiles;  // a folder may be named twice, or lie in another
   for (const auto& directory : directories) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(directory, ignored)) {
@@ -48,6 +49,7 @@ Registry::Registry(const std::vector<std::filesystem::path>& directories) {
       continue;
     }
     for (const auto& path : jsonFiles(directory)) {
+      if (!seenFiles.insert(std::filesystem::weakly_canonical(path, ignored)).second) continue;
       Problems found;
       const TechniqueFile file = readTechniqueFile(path, found);
       problems_.append(found);
