@@ -77,7 +77,8 @@ std::vector<PlanEntry> planEntries(const EffectPlan& plan) {
 
 Light lightAtPose(const Light& light, int pose, int poses) {
   const double phase = 2.0 * glm::pi<double>() * pose / poses;
-  const double yaw = kTurnDegrees * std::sin(phase);
+  // A circle through the nominal pose: never farther from it than its diameter.
+  const double yaw = 0.5 * kTurnDegrees * std::sin(phase);
   const double pitch = 0.5 * kTurnDegrees * (1.0 - std::cos(phase));
   const LightFrame axes = lightFrame(light);
   const glm::dquat turn = glm::angleAxis(glm::radians(yaw), axes.y) * glm::angleAxis(glm::radians(pitch), axes.x);
