@@ -154,6 +154,22 @@ struct Session::State {
     messages.discard();
     throw Error(fmt::format("technique '{}': {}", technique, message));
   }
+
+  SlotState makeSlot(const OpenTechnique& technique, const void* parameters) {
+    SlotState slot;
+    slot.name = technique.registered->declaration.name;
+    guarded(slot.name, [&] {
+      slot.technique = technique.entry->create(parameters);
+      if (plan.has(Rule::receivers)) {
+        setUpTechnique(slot, technique, parameters);
+      } else {
+        slot.visibility = fullyLit;  // nothing can be shadowed: nothing runs
+      }
+      if (slot.support.ok()) setUpShading(slot);
+      messages.throwIfError("set-up");
+    });
+    return slot;
+  }
 };
 
 Session::Session(SessionSetup setup) : state_(std::make_unique<State>(std::move(setup))) {}
@@ -200,20 +216,13 @@ void Session::moveInstances(const std::vector<glm::dmat4>& worlds) {
 }
 
 Slot Session::addSlot(const OpenTechnique& technique, const std::shared_ptr<const void>& parameters) {
-  SlotState slot;
-  slot.name = technique.registered->declaration.name;
-  state_->guarded(slot.name, [&] {
-    slot.technique = technique.entry->create(parameters.get());
-    if (state_->plan.has(Rule::receivers)) {
-      state_->setUpTechnique(slot, technique, parameters.get());
-    } else {
-      slot.visibility = state_->fullyLit;  // nothing can be shadowed: nothing runs
-    }
-    if (slot.support.ok()) state_->setUpShading(slot);
-    state_->messages.throwIfError("set-up");
-  });
-  state_->slots.push_back(std::move(slot));
+  state_->slots.push_back(state_->makeSlot(technique, parameters.get()));
   return {state_->slots.size() - 1};
+}
+
+void Session::replaceSlot(Slot slot, const OpenTechnique& technique, const std::shared_ptr<const void>& parameters) {
+  SlotState made = state_->makeSlot(technique, parameters.get());
+  state_->at(slot) = std::move(made);
 }
 
 void Session::removeSlots() {
@@ -267,6 +276,22 @@ Image Session::visibility(Slot slot) const {
 }
 Image Session::shaded(Slot slot) const {
   return state_->at(slot).shading->read(state_->at(slot).shaded);
+}
+const TextureResource& Session::visibilityTexture(Slot slot) const {
+  return *state_->at(slot).visibility;
+}
+const TextureResource& Session::shadedTexture(Slot slot) const {
+  const SlotState& s = state_->at(slot);
+  return *s.shading->resource(s.shaded);
+}
+std::vector<std::shared_ptr<TextureResource>> Session::textures(Slot slot) const {
+  std::vector<std::shared_ptr<TextureResource>> all = state_->shared.textures();
+  if (const auto& graph = state_->at(slot).graph) {
+    const auto own = graph->textures();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  std::erase_if(all, [](const auto& texture) { return texture->info.format == Format::rg32ui; });
+  return all;
 }
 Image Session::receiverMask() const {
   return state_->shared.read(state_->passes.gbuffer.mask);

@@ -59,6 +59,8 @@ class Session {
   /// Sets a technique up. Its refusal, if any, is told by `refusal`; a refused slot renders nothing. Throws Error when set-up
   /// fails. `parameters` are of the technique's entry (Registry::parameters).
   Slot addSlot(const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
+  /// Sets another technique or other parameters up in a slot's place. If that throws, the slot stays as it was.
+  void replaceSlot(Slot slot, const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
   void removeSlots();
 
   const Support& support(Slot slot) const;
@@ -78,6 +80,11 @@ class Session {
   Image visibility(Slot slot) const;
   /// Of the last frame: linear RGBA.
   Image shaded(Slot slot) const;
+  /// The same, where they lie.
+  const TextureResource& visibilityTexture(Slot slot) const;
+  const TextureResource& shadedTexture(Slot slot) const;
+  /// Everything that can be looked at: the shared passes' textures, then the slot's own. Integer textures are left out.
+  std::vector<std::shared_ptr<TextureResource>> textures(Slot slot) const;
   Image receiverMask() const;
   Image positions() const;  ///< relative to the camera, world axes; 4 channels, see GBuffer
   Image normals() const;    ///< 4 channels

@@ -9,6 +9,12 @@
 namespace gnomon::test {
 namespace {
 
+std::vector<std::string> namesOf(const std::vector<std::shared_ptr<TextureResource>>& textures) {
+  std::vector<std::string> names;
+  for (const auto& texture : textures) names.push_back(texture->name);
+  return names;
+}
+
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -158,7 +164,7 @@ TEST_F(Declaration, APassWhoseLastReaderGoesIsGone) {
   reader("middle", first);
   compile({constant("other", "2.0")});
   EXPECT_THAT(graph->passNames(), ElementsAre("other"));
-  EXPECT_THAT(graph->textureNames(), ElementsAre("other"));
+  EXPECT_THAT(namesOf(graph->textures()), ElementsAre("other"));
 }
 
 TEST_F(Declaration, APassIsKeptForTheBufferItWrites) {
@@ -263,7 +269,7 @@ TEST_F(Declaration, MemoryDoesNotCountWhatIsImported) {
       other->builder().fullscreen("copy", {.shader = shader, .reads = {{"source", imported}}, .format = Format::r8});
   other->compile(std::span(&out, 1));
   EXPECT_EQ(other->memoryBytes(), 8U * 4U);
-  EXPECT_THAT(other->textureNames(), ElementsAre("copy"));
+  EXPECT_THAT(namesOf(other->textures()), ElementsAre("copy"));
 }
 
 }  // namespace

@@ -25,6 +25,8 @@ ContextInfo currentContextInfo() {
 
 struct DebugMessages::State {
   std::string errors;
+  void* earlierFunction = nullptr;  // who received before: gets them again afterwards
+  void* earlierUser = nullptr;
 
   static void GLAPIENTRY receive(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length,
                                  const GLchar* text, const void* user) {
@@ -40,6 +42,8 @@ struct DebugMessages::State {
 };
 
 DebugMessages::DebugMessages() : state_(std::make_unique<State>()) {
+  glGetPointerv(GL_DEBUG_CALLBACK_FUNCTION, &state_->earlierFunction);
+  glGetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &state_->earlierUser);
   glEnable(GL_DEBUG_OUTPUT);
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DEBUG_SEVERITY_NOTIFICATION, 0, nullptr, GL_FALSE);
@@ -47,7 +51,7 @@ DebugMessages::DebugMessages() : state_(std::make_unique<State>()) {
 }
 
 DebugMessages::~DebugMessages() {
-  glDebugMessageCallback(nullptr, nullptr);
+  glDebugMessageCallback(reinterpret_cast<GLDEBUGPROC>(state_->earlierFunction), state_->earlierUser);
 }
 
 void DebugMessages::throwIfError(const std::string& where) {

@@ -13,7 +13,7 @@ struct ContextInfo {
 };
 ContextInfo currentContextInfo();
 
-/// Receives the debug messages of the context that is current when it is made. One at a time per context.
+/// Receives the debug messages of the context that is current when it is made. Nested ones take turns: the last made receives.
 class DebugMessages {
  public:
   DebugMessages();

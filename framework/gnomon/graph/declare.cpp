@@ -372,12 +372,12 @@ bool Graph::hasCpuPasses() const {
                      [](const PassNode& node) { return node.kept && std::holds_alternative<CpuPass>(node.kind); });
 }
 
-std::vector<std::string> Graph::textureNames() const {
-  std::vector<std::string> names;
+std::vector<std::shared_ptr<TextureResource>> Graph::textures() const {
+  std::vector<std::shared_ptr<TextureResource>> owned;
   for (std::size_t i = 0; i < state_->textures.size(); ++i) {
-    if (state_->writer[i] != kImported && state_->textures[i]->object) names.push_back(state_->textures[i]->name);
+    if (state_->writer[i] != kImported && state_->textures[i]->object) owned.push_back(state_->textures[i]);
   }
-  return names;
+  return owned;
 }
 
 }  // namespace gnomon

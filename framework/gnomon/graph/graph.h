@@ -75,7 +75,8 @@ class Graph {
   std::size_t memoryBytes() const;
   std::vector<std::string> passNames() const;  ///< those kept
   bool hasCpuPasses() const;                   ///< among those kept
-  std::vector<std::string> textureNames() const;
+  /// Those it owns and keeps, in the order of their declaration.
+  std::vector<std::shared_ptr<TextureResource>> textures() const;
 
  private:
   friend class GraphDeclaration;
