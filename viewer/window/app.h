@@ -80,6 +80,7 @@ class App {
   void editParameter(int steps);
   void resetParameter();
   void saveConfig();
+  void saveScreenshot();
   bool filesChanged();
   void say(std::string text) { message_ = std::move(text); }
 
@@ -107,6 +108,7 @@ class App {
   bool showHelp_ = false;
   bool hidden_ = false;
   bool fullScreenWish_ = false;
+  bool screenshotWish_ = false;
   bool quit_ = false;
   bool dirty_ = true;
   bool compileNotice_ = false;

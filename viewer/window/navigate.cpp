@@ -60,7 +60,7 @@ Camera zoomed(const Camera& camera, double steps) {
   const double factor = std::pow(0.9, steps);
   Camera moved = camera;
   moved.position = camera.target + (camera.position - camera.target) * factor;
-  moved.height *= factor;
+  if (camera.type == CameraType::orthographic) moved.height *= factor;
   return moved;
 }
 
@@ -81,7 +81,7 @@ Camera framing(const Camera& camera, const Bounds& bounds, double aspect) {
   Camera moved = camera;
   moved.target = bounds.centre();
   moved.position = moved.target - axesOf(camera).look * (radius / std::sin(narrowest));
-  moved.height = 2.0 * radius / std::min(aspect, 1.0);
+  if (camera.type == CameraType::orthographic) moved.height = 2.0 * radius / std::min(aspect, 1.0);
   return moved;
 }
 

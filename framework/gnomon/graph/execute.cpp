@@ -145,8 +145,7 @@ class GraphExecution final : public CpuContext {
     const std::size_t bytes = state.scratchRecords.size() * sizeof(DrawRecord);
     const std::span<const std::byte> content(reinterpret_cast<const std::byte*>(state.scratchRecords.data()), bytes);
     BufferResource& records = *state.records;
-    const bool same =
-        content.size() == records.contents.size() && std::memcmp(content.data(), records.contents.data(), bytes) == 0;
+    const bool same = std::equal(content.begin(), content.end(), records.contents.begin(), records.contents.end());
     if (same && records.object) return;
     if (bytes > records.bytes || !records.object) {
       records.bytes = std::max<std::size_t>(bytes, records.bytes * 2);
