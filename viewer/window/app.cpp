@@ -353,7 +353,7 @@ bool App::render(std::size_t index) {
     glFinish();
     const double cpu = processCpuMs();
     const double wall = wallMs();
-    GraphReport report = session_->runTechnique(*t.slot, {.timePasses = showTimes_});
+    GraphReport report = session_->runTechnique(*t.slot, {.skipUnchanged = !showTimes_, .timePasses = showTimes_});
     glFinish();
     if (report.counters.passesRun > 0) {
       t.cpuMs = processCpuMs() - cpu;

@@ -42,15 +42,15 @@ glm::vec2 Panels::box(glm::vec2 at, const std::vector<std::string>& lines) {
 
 void Panels::draw(std::size_t shown) {
   if (app_.showHelp_) return help();  // alone: nothing behind it can be read anyway
-  technique(shown);
+  const float bottom = technique(shown);
   if (app_.showTimes_) times();
   if (app_.showPlan_) plan();
   parameters();
-  if (app_.difference_ && app_.texture_ < 0) legend();
+  if (app_.difference_ && app_.texture_ < 0) legend(bottom);
   bottomLine();
 }
 
-void Panels::technique(std::size_t shown) {
+float Panels::technique(std::size_t shown) {
   const ViewerTechnique& t = app_.techniques_[shown];
   const std::string set = t.technique.parametersText();
   std::vector<std::string> lines{fmt::format("!{} of {}  {}{}", shown + 1, app_.techniques_.size(), t.technique.name(),
@@ -69,7 +69,7 @@ void Panels::technique(std::size_t shown) {
   if (app_.difference_)
     lines.push_back(fmt::format("V of this minus V of {}", app_.techniques_[app_.before_].technique.name()));
   if (!inspected_.empty()) lines.push_back("!" + inspected_);
-  box({0.0f, 0.0f}, lines);
+  return box({0.0f, 0.0f}, lines).y;
 }
 
 void Panels::parameters() {
@@ -169,10 +169,10 @@ void Panels::bottomLine() {
           app_.message_.empty() ? kText : kStrong);
 }
 
-void Panels::legend() {
+void Panels::legend(float top) {
   const float line = o_.lineHeight();
   const float width = o_.textWidth("-0.5 too dark      0      leak +0.5");
-  const glm::vec2 at((static_cast<float>(app_.size_.x) - width) * 0.5f, static_cast<float>(app_.size_.y) - 5.5f * line);
+  const glm::vec2 at(2.0f * kPad, top + 2.0f * kPad);
   o_.rectangle(at - kPad, at + glm::vec2(width, 2.2f * line) + kPad, kBack);
   constexpr int kSteps = 64;
   for (int i = 0; i < kSteps; ++i) {

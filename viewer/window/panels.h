@@ -21,13 +21,14 @@ class Panels {
  private:
   /// A translucent box with lines of text; returns its lower right corner.
   glm::vec2 box(glm::vec2 at, const std::vector<std::string>& lines);
-  void technique(std::size_t shown);
+  /// Returns where its box ends.
+  float technique(std::size_t shown);
   void parameters();
   void plan();
   void times();
   void help();
   void bottomLine();
-  void legend();
+  void legend(float top);
   glm::vec2 textSize(const std::vector<std::string>& lines) const;
 
   App& app_;
