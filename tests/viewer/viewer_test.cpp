@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "display.h"
 #include "gnomon/base/files.h"
@@ -30,6 +31,14 @@ std::vector<std::string> with(std::vector<std::string> words, const std::vector<
 class ViewerWindow : public ::testing::Test {
  protected:
   ViewerWindow() { folder_.write("config.json", kConfig); }
+
+  /// Finished files that the viewer named by itself: not those under the temporary names that files have until they are whole.
+  std::vector<std::string> handedOver(const std::string& ending) const {
+    std::vector<std::string> names = namesIn(folder_.path(), ending);
+    std::erase_if(names,
+                  [](const std::string& name) { return !std::regex_match(name, std::regex("gnomon-[0-9]+-[0-9]+\\.[a-z]+")); });
+    return names;
+  }
 
   /// The runner's picture of a config that the viewer saved.
   std::string runnersPicture(const std::string& config) const {
@@ -66,15 +75,13 @@ TEST_F(ViewerWindow, RealKeysFlipScreenshotAndQuit) {
   Viewer viewer(display_.name(), folder_.path(), with({"config.json"}, kSize));
   viewer.waitForWindow();
   viewer.keys({"h", "Right", "F12"});
-  EXPECT_TRUE(eventually([&] { return !namesIn(folder_.path(), ".png").empty(); })) << viewer.errors();
+  EXPECT_TRUE(eventually([&] { return !handedOver(".png").empty(); })) << viewer.errors();
   viewer.keys({"ctrl+s"});
-  ASSERT_TRUE(eventually([&] { return namesIn(folder_.path(), ".json").size() == 2; })) << viewer.errors();
+  ASSERT_TRUE(eventually([&] { return handedOver(".json").size() == 1; })) << viewer.errors();
   viewer.keys({"Escape"});
   EXPECT_EQ(viewer.exitCode(), 0) << viewer.errors();
-  for (const std::string& name : namesIn(folder_.path(), ".json")) {
-    if (name == "config.json") continue;
-    EXPECT_EQ(Json::parse(readFile(folder_ / name))["techniques"][0]["technique"], "shadow_map");
-  }
+  const Json saved = Json::parse(readFile(folder_ / handedOver(".json")[0]));
+  EXPECT_EQ(saved["techniques"][0]["technique"], "shadow_map");
 }
 
 TEST_F(ViewerWindow, ABrokenShaderLeavesTheLastGoodPictureAndIsSurvived) {
@@ -89,16 +96,16 @@ TEST_F(ViewerWindow, ABrokenShaderLeavesTheLastGoodPictureAndIsSurvived) {
                 with({"my.json", "--technique-dir", (folder_ / "techniques").string()}, kSize));
   viewer.waitForWindow();
   viewer.keys({"h", "F12"});
-  ASSERT_TRUE(eventually([&] { return namesIn(folder_.path(), ".png").size() == 1; })) << viewer.errors();
-  const std::string before = readFile(folder_ / namesIn(folder_.path(), ".png")[0]);
-  std::filesystem::remove(folder_ / namesIn(folder_.path(), ".png")[0]);
+  ASSERT_TRUE(eventually([&] { return handedOver(".png").size() == 1; })) << viewer.errors();
+  const std::string before = readFile(folder_ / handedOver(".png")[0]);
+  std::filesystem::remove(folder_ / handedOver(".png")[0]);
   sleepMilliseconds(1100);  // another second in the file's time stamp
   writeFileAtomically(plugin / "shadow_map.frag", "this is no shader\n");
   sleepMilliseconds(1500);  // files are looked after twice a second
   ASSERT_TRUE(viewer.running()) << viewer.errors();
   viewer.keys({"F12"});
-  ASSERT_TRUE(eventually([&] { return namesIn(folder_.path(), ".png").size() == 1; })) << viewer.errors();
-  EXPECT_TRUE(readFile(folder_ / namesIn(folder_.path(), ".png")[0]) == before);
+  ASSERT_TRUE(eventually([&] { return handedOver(".png").size() == 1; })) << viewer.errors();
+  EXPECT_TRUE(readFile(folder_ / handedOver(".png")[0]) == before);
   viewer.keys({"Escape"});
   EXPECT_EQ(viewer.exitCode(), 0) << viewer.errors();
 }

@@ -374,7 +374,14 @@ void App::draw() {
   // Whatever passes bind, the picture goes where the caller wanted it.
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-  const std::size_t shown = holdOther_ ? before_ : current_;
+  std::size_t shown = holdOther_ ? before_ : current_;
+  // A first use compiles, which takes a while: the picture before stays for a frame, with a line that says so.
+  const bool cold = !techniques_[shown].slot && techniques_[shown].failure.empty();
+  compileNotice_ = cold && !compileNotice_ && techniques_[before_].slot.has_value();
+  if (compileNotice_) {
+    shown = before_;
+    dirty_ = true;
+  }
   const bool ok = render(shown);
   const bool otherOk = (split_ || difference_) && before_ != shown && render(before_);
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));

@@ -111,7 +111,7 @@ class App {
   bool screenshotWish_ = false;
   bool quit_ = false;
   bool dirty_ = true;
-  bool compileNotice_ = false;
+  bool compileNotice_ = false;  ///< this frame still shows the technique before
   std::string message_;
 
   std::set<Action> held_;

@@ -45,7 +45,7 @@ void Panels::draw(std::size_t shown) {
   const float bottom = technique(shown);
   if (app_.showTimes_) times();
   if (app_.showPlan_) plan();
-  parameters();
+  parameters(bottom);
   if (app_.difference_ && app_.texture_ < 0) legend(bottom);
   bottomLine();
 }
@@ -69,10 +69,12 @@ float Panels::technique(std::size_t shown) {
   if (app_.difference_)
     lines.push_back(fmt::format("V of this minus V of {}", app_.techniques_[app_.before_].technique.name()));
   if (!inspected_.empty()) lines.push_back("!" + inspected_);
-  return box({0.0f, 0.0f}, lines).y;
+  const glm::vec2 end = box({0.0f, 0.0f}, lines);
+  techniqueRight_ = end.x;
+  return end.y;
 }
 
-void Panels::parameters() {
+void Panels::parameters(float belowTechnique) {
   const ViewerTechnique& t = app_.techniques_[app_.current_];
   const auto& fields = t.technique.technique.entry->parameters->fields();
   if (fields.empty()) return;
@@ -87,7 +89,9 @@ void Panels::parameters() {
                   : chosen.binding == Binding::specialise ? "a change compiles a shader"
                                                           : "a value in shaders");
   const glm::vec2 size = textSize(lines) + 2.0f * kPad * app_.scale_;
-  box({static_cast<float>(app_.size_.x) - size.x, 0.0f}, lines);
+  // Beside the technique's box where there is room, else below it.
+  const float left = static_cast<float>(app_.size_.x) - size.x;
+  box({left, left < techniqueRight_ ? belowTechnique : 0.0f}, lines);
 }
 
 void Panels::plan() {
@@ -165,7 +169,12 @@ void Panels::bottomLine() {
   o_.rectangle({0.0f, y - kPad * 0.5f}, glm::vec2(app_.size_), kBack);
   const std::string keys =
       "F1 keys   ←/→ technique   C split   X difference   E error   V textures   G plan   T times   ↑/↓ +/- parameters";
-  o_.text({kPad * app_.scale_, y}, app_.message_.empty() ? keys : cut(app_.message_, 150),
+  if (app_.compileNotice_) {
+    o_.text({kPad * app_.scale_, y}, "compiling " + app_.techniques_[app_.current_].technique.name() + " ...", kStrong);
+    return;
+  }
+  const auto room = static_cast<std::size_t>(std::max(1.0f, static_cast<float>(app_.size_.x) / o_.textWidth("m") - 2.0f));
+  o_.text({kPad * app_.scale_, y}, app_.message_.empty() ? keys : cut(app_.message_, room),
           app_.message_.empty() ? kText : kStrong);
 }
 

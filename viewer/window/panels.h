@@ -23,7 +23,7 @@ class Panels {
   glm::vec2 box(glm::vec2 at, const std::vector<std::string>& lines);
   /// Returns where its box ends.
   float technique(std::size_t shown);
-  void parameters();
+  void parameters(float belowTechnique);
   void plan();
   void times();
   void help();
@@ -34,6 +34,7 @@ class Panels {
   App& app_;
   Overlay& o_;
   std::string inspected_;
+  float techniqueRight_ = 0.0f;
 };
 
 }  // namespace gnomon
