@@ -200,5 +200,14 @@ TEST(RayTraced, SamplesBelowTheHorizonAreNotTraced) {
   EXPECT_NEAR(static_cast<double>(traced.rays), 24.0 * receivers, 0.005 * receivers);
 }
 
+TEST(RayTraced, SourceOfAnySizeAndDistanceGivesFiniteVisibility) {  // Embree's floats end at 1e38, their squares at 1e19
+  for (const double size : {1e-300, 1e-30, 1e19, 1e38, 1e60, 1e300}) {
+    SessionSetup setup = builtinSetup("layers", {24, 18});
+    setup.light.source.size = {size, 1.0};
+    const Image visibility = renderVisibility(std::move(setup), "ray_traced", R"({"samples": 4})");
+    for (const float v : visibility.data) ASSERT_TRUE(v >= 0.0f && v <= 1.0f) << "source of " << size << " m";
+  }
+}
+
 }  // namespace
 }  // namespace gnomon::test

@@ -16,6 +16,9 @@ double largestComponent(const glm::dvec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+/// Metres beyond which a source counts as infinitely far: squares of larger floats come near their range's end.
+constexpr double kFarthest = 1e17;
+
 /// Half a unit in the last place of a float, relative.
 constexpr double kRoundoff = 0.5 * 1.1920929e-7;
 
@@ -95,13 +98,16 @@ void ShadowRays::start(const Receiver& receiver, float& visibility) {
 
 void ShadowRays::add(const glm::dvec3& sample, bool direction) {
   const glm::dvec3 towards = direction ? sample : sample - tracer_.origin() - origin_;
-  if (glm::dot(normal_, towards) <= 0.0) return;
+  const double reach = largestComponent(towards);
+  if (!(glm::dot(normal_, towards) > 0.0) || !std::isfinite(reach)) return;
   ++counts_.back().rays;
-  if (tracer_.halvesRays() && !direction) {
+  if (direction || reach > kFarthest) {
+    push(origin_, towards, true);
+  } else if (tracer_.halvesRays()) {
     push(origin_, 0.5 * towards, false);
     push(sample - tracer_.origin(), -0.5 * towards, false);
   } else {
-    push(origin_, towards, direction);
+    push(origin_, towards, false);
   }
   if (filled_ == kWidth) flush();
 }
@@ -111,11 +117,15 @@ void ShadowRays::push(const glm::dvec3& origin, const glm::dvec3& towards, bool 
   rays_.org_x[lane] = static_cast<float>(origin.x);
   rays_.org_y[lane] = static_cast<float>(origin.y);
   rays_.org_z[lane] = static_cast<float>(origin.z);
-  rays_.dir_x[lane] = static_cast<float>(towards.x);
-  rays_.dir_y[lane] = static_cast<float>(towards.y);
-  rays_.dir_z[lane] = static_cast<float>(towards.z);
+  // Of unit length: Embree squares directions, and very long or short ones leave the range of its floats.
+  const double scale = largestComponent(towards);
+  const double length = glm::length(towards / scale);
+  const glm::dvec3 unit = towards / scale / length;
+  rays_.dir_x[lane] = static_cast<float>(unit.x);
+  rays_.dir_y[lane] = static_cast<float>(unit.y);
+  rays_.dir_z[lane] = static_cast<float>(unit.z);
   rays_.tnear[lane] = 0.0f;
-  rays_.tfar[lane] = endless ? std::numeric_limits<float>::infinity() : 1.0f;
+  rays_.tfar[lane] = endless ? std::numeric_limits<float>::infinity() : static_cast<float>(scale * length);
   rays_.mask[lane] = ~0U;
   rays_.time[lane] = 0.0f;
   rays_.flags[lane] = 0;
