@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -39,6 +40,13 @@ class Descriptor {
   ~Descriptor() { ::close(fd_); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
+
+  /// Waits until no other process holds it; held until the descriptor closes.
+  void lock() const {
+    while (::flock(fd_, LOCK_EX) != 0) {
+      if (errno != EINTR) fail(path_, "cannot lock", errno);
+    }
+  }
 
   std::size_t read(char* to, std::size_t size) const {
     while (true) {
@@ -159,6 +167,7 @@ void appendLineSynced(const fs::path& path, std::string_view line) {
   makeFolder(folderOf(path));
   const bool isNew = !fs::exists(path);
   const Descriptor file(path, O_RDWR | O_CREAT | O_APPEND, "cannot open");
+  file.lock();  // another process's append must not look like a torn tail
   const off_t whole = endOfWholeLines(file);
   if (whole != file.size()) file.truncate(whole);
   file.write(std::string(line) + '\n');

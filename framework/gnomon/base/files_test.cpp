@@ -4,10 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "gnomon/base/error.h"
 
@@ -172,6 +175,20 @@ TEST_F(CacheDirectory, WorksWithoutHome) {
   set("XDG_CACHE_HOME", "");
   set("HOME", "");
   EXPECT_EQ(cacheDirectory().parent_path(), fs::temp_directory_path());
+}
+
+TEST_F(Files, LinesOfManyWritersAllSurvive) {  // each has a descriptor of its own, as processes have
+  constexpr std::size_t kWriters = 4;
+  constexpr std::size_t kLines = 50;
+  std::vector<std::thread> writers;
+  for (std::size_t w = 0; w < kWriters; ++w) {
+    writers.emplace_back([&] {
+      for (std::size_t i = 0; i < kLines; ++i) appendLineSynced(folder_ / "results.jsonl", std::string(300, 'x'));
+    });
+  }
+  for (std::thread& writer : writers) writer.join();
+  const std::string all = readFile(folder_ / "results.jsonl");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(all.begin(), all.end(), '\n')), kWriters * kLines);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "gnomon/base/files.h"
 #include "gnomon/base/log.h"
@@ -27,6 +28,19 @@ std::map<std::string, JobRecord> earlierResults(const std::filesystem::path& dir
 std::string label(const ResolvedRun& run, const ResolvedJob& job) {
   const std::string parameters = job.technique.parametersText();
   return fmt::format("{}: {}{}", run.sceneName, job.technique.name(), parameters.empty() ? "" : " (" + parameters + ")");
+}
+
+JobRecord failedJob(const ResolvedRun& run, std::size_t light, const ResolvedTechnique& technique, const std::string& reason) {
+  JobRecord record;
+  record.job = jobKey(run, light, technique);
+  record.config = run.config.name;
+  record.scene = run.sceneName;
+  record.light = static_cast<int>(light);
+  record.technique = technique.name();
+  record.parametersJson = technique.parametersJson().dump();
+  record.status = JobStatus::failed;
+  record.reason = reason;
+  return record;
 }
 
 }  // namespace
@@ -55,6 +69,7 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
   for (const ResolvedRun& run : runs) {
     for (std::size_t light = 0; light < run.lights.size(); ++light) {
       std::unique_ptr<LightRun> lightRun;  // made when the first of its jobs is not there yet
+      std::string noReference;             // why it could not be made
       for (const ResolvedJob& job : run.jobs) {
         if (job.light != light) continue;
         const std::size_t mine = index++;
@@ -67,12 +82,16 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
           progress(mine + 1, total, name, &summary.records.back());
           continue;
         }
-        if (!lightRun) {
+        if (!lightRun && noReference.empty()) {
           progress(mine, total, fmt::format("{}: reference {}", run.sceneName, run.reference.name()), nullptr);
-          lightRun = std::make_unique<LightRun>(run, light, registry, how);
+          try {
+            lightRun = std::make_unique<LightRun>(run, light, registry, how);
+          } catch (const std::exception& error) {
+            noReference = error.what();  // of this light alone: the others go on
+          }
         }
         progress(mine, total, name, nullptr);
-        JobRecord record = lightRun->run(job.technique);
+        JobRecord record = lightRun ? lightRun->run(job.technique) : failedJob(run, light, job.technique, noReference);
         appendLineSynced(summary.results, toJsonLine(record));
         if (record.time) writeFileAtomically(options.out / "timing" / (record.job + ".json"), timingPairsJson(*record.time));
         summary.records.push_back(std::move(record));

@@ -50,7 +50,10 @@ std::string referenceKey(const Session& session, const ResolvedTechnique& techni
       "{}\n",
       contentHash(session.scene()), writeObject(*lightTable(), &session.light()).dump(),
       writeObject(*cameraTable(), &session.camera()).dump(), session.outputSize().x, session.outputSize().y, technique.name(),
-      technique.parametersJson().dump(), hashHex(readFile(technique.technique.registered->library)), plan, frameworkAbiTag(),
+      technique.parametersJson().dump(),
+      hashHex(readFile(technique.technique.registered->library) +
+              readFile(installationDirectory().parent_path() / "libgnomon.so")),
+      plan, frameworkAbiTag(),
       hashHex(shaderText(installationDirectory() / "shaders") +
               shaderText(Registry::directory(*technique.technique.registered))),
       info.renderer, info.version);
