@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gnomon/base/files.h"
 #include "gnomon/run/reference.h"
 #include "render.h"
 
@@ -41,6 +42,27 @@ TEST(ReferenceHalves, OfASourceWithoutExtentAreOneAndTheSame) {
   EXPECT_EQ(reference.halves.a.data, reference.halves.b.data);
   EXPECT_EQ(reference.rays, pixelsIn(session.receiverMask()));
 }
+
+TEST(ReferenceKey, HoldsTheCodeOfTechniqueAndFramework) {  // else a mended sampler would be judged by the old one's halves
+  const Session session(builtinSetup("half_plane", {8, 6}));
+  const ResolvedTechnique technique = rayTraced("{}");
+  const std::string code =
+      readFile(technique.technique.registered->library) + readFile(installationDirectory().parent_path() / "libgnomon.so");
+  EXPECT_NE(referenceKey(session, technique).find(hashHex(code)), std::string::npos);
+}
+
+class Casters : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Casters, ThatDoNotCastShadowNothing) {
+  SessionSetup setup = builtinSetup("layers", {80, 60});
+  const Image with = renderVisibility(setup, GetParam());
+  ASSERT_LT(*std::min_element(with.data.begin(), with.data.end()), 0.5f);
+  for (Instance& instance : setup.scene.instances) instance.casts = false;
+  const Image without = renderVisibility(setup, GetParam());
+  EXPECT_EQ(*std::min_element(without.data.begin(), without.data.end()), 1.0f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Techniques, Casters, ::testing::Values("shadow_map", "pcf", "ray_traced"));
 
 }  // namespace
 }  // namespace gnomon::test
