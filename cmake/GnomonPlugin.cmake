@@ -10,6 +10,10 @@ function(gnomon_add_plugin name)
   endif()
   add_library(${name} MODULE ${PLUGIN_SOURCES})
   gnomon_compile_options(${name})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Two versions of a plugin may be loaded at once: none of its statics may be made unique in the process.
+    target_compile_options(${name} PRIVATE -fno-gnu-unique)
+  endif()
   target_link_libraries(${name} PRIVATE gnomon ${PLUGIN_LINK})
   set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                            LIBRARY_OUTPUT_DIRECTORY ${PLUGIN_DIRECTORY})

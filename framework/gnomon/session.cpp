@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "gnomon/base/error.h"
 #include "gnomon/base/files.h"
 #include "gnomon/technique/parameter_block.h"
@@ -27,12 +30,25 @@ EffectPlan planForAll(const SessionSetup& setup, const SceneSurvey& nominal) {
   return plan;
 }
 
+/// From the first row with a pixel above 0.5 to the one behind the last; 0 and 0 where there is none.
+glm::ivec2 rowsWithAny(const Image& pixels) {
+  const auto above = [](float v) { return v > 0.5f; };
+  const auto first = std::find_if(pixels.data.begin(), pixels.data.end(), above);
+  if (first == pixels.data.end()) return {0, 0};
+  const auto last = std::find_if(pixels.data.rbegin(), pixels.data.rend(), above);
+  return {static_cast<int>(first - pixels.data.begin()) / pixels.width,
+          static_cast<int>(pixels.data.rend() - last - 1) / pixels.width + 1};
+}
+
+/// Never moved: technique and graph refer to `parameters`, and go before them.
 struct SlotState {
   std::string name;
+  const Entry* entry = nullptr;      ///< null of a picture
+  std::shared_ptr<void> parameters;  ///< the session's copy
   std::unique_ptr<Technique> technique;
   Support support;
   std::unique_ptr<Graph> graph;  ///< null when refused, or when no receiver faces the light
-  Outputs outputs;
+  Buffer block;                  ///< the uniform ones of `parameters`
   std::unique_ptr<Graph> shading;
   Texture shaded;
   std::shared_ptr<TextureResource> visibility;
@@ -50,7 +66,7 @@ struct Session::State {
   Graph shared;
   SessionPasses passes;
   std::shared_ptr<TextureResource> fullyLit;
-  std::vector<SlotState> slots;
+  std::vector<std::unique_ptr<SlotState>> slots;
 
   explicit State(SessionSetup s)
       : setup(std::move(s)),
@@ -95,37 +111,40 @@ struct Session::State {
             bring("gMask", g.mask)};
   }
 
-  void setUpTechnique(SlotState& slot, const OpenTechnique& technique, const void* parameters) {
+  /// Whether a texture can be shown as visibility.
+  void requireVisibility(const TextureInfo& info) const {
+    if (info.size == setup.outputSize && (info.format == Format::r16f || info.format == Format::r32f)) return;
+    throw Error(fmt::format("its visibility is {}x{} {}; it must be r16f or r32f of the output's size, {}x{}", info.size.x,
+                            info.size.y, formatFacts(info.format).name, setup.outputSize.x, setup.outputSize.y));
+  }
+
+  void setUpTechnique(SlotState& slot, const OpenTechnique& technique) {
     gl::ShaderSources sources = frameworkShaders();
     sources.directories.insert(sources.directories.begin(), Registry::directory(*technique.registered));
     slot.graph = std::make_unique<Graph>(slot.name, setup.outputSize, std::move(sources));
     GraphBuilder& graph = slot.graph->builder();
     const FieldTable& table = *technique.entry->parameters;
-    const std::vector<std::byte> block = parameterBlockBytes(table, parameters);
-    const Buffer buffer = graph.buffer("Parameters", block.size());
-    slot.graph->uniforms().write(buffer, block);
-    graph.provide("Parameters", buffer);
+    const std::vector<std::byte> block = parameterBlockBytes(table, slot.parameters.get());
+    slot.block = graph.buffer("Parameters", block.size());
+    slot.graph->uniforms().write(slot.block, block);
+    graph.provide("Parameters", slot.block);
     graph.include("parameters", parameterBlockText(table));
-    for (const Constant& constant : parameterConstants(table, parameters)) graph.constant(constant);
+    for (const Constant& constant : parameterConstants(table, slot.parameters.get())) graph.constant(constant);
 
-    Frame frame{setup.outputSize, setup.light, importGBuffer(graph), 0};
+    Frame frame{setup.outputSize, setup.light, importGBuffer(graph), 0, slot.block};
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &frame.maxTextureSize);
     slot.support = slot.technique->support(survey, setup.light, frame);
     if (!slot.support.ok()) {
       slot.graph.reset();
       return;
     }
-    slot.outputs = slot.technique->setup(graph, frame, plan);
-    if (!slot.outputs.visibility) throw Error("setup gave no visibility texture");
-    slot.visibility = slot.graph->resource(slot.outputs.visibility);
-    const TextureInfo& info = slot.visibility->info;
-    if (info.size != setup.outputSize || (info.format != Format::r16f && info.format != Format::r32f)) {
-      throw Error(fmt::format("its visibility is {}x{} {}; it must be r16f or r32f of the output's size, {}x{}", info.size.x,
-                              info.size.y, formatFacts(info.format).name, setup.outputSize.x, setup.outputSize.y));
-    }
-    std::vector<Texture> outputs{slot.outputs.visibility};
-    if (slot.outputs.admissible) outputs.push_back(*slot.outputs.admissible);
-    slot.graph->compile(outputs);
+    const Outputs outputs = slot.technique->setup(graph, frame, plan);
+    if (!outputs.visibility) throw Error("setup gave no visibility texture");
+    slot.visibility = slot.graph->resource(outputs.visibility);
+    requireVisibility(slot.visibility->info);
+    std::vector<Texture> kept{outputs.visibility};
+    if (outputs.admissible) kept.push_back(*outputs.admissible);
+    slot.graph->compile(kept);
   }
 
   void setUpShading(SlotState& slot) {
@@ -138,7 +157,7 @@ struct Session::State {
     slot.shading->compile(std::span(&slot.shaded, 1));
   }
 
-  SlotState& at(Slot slot) { return slots.at(slot.index); }
+  SlotState& at(Slot slot) { return *slots.at(slot.index); }
 
   /// Runs code of a plugin. Whatever it throws is copied into an Error that names it, and what OpenGL said of it ends with it.
   template <class Work>
@@ -155,20 +174,49 @@ struct Session::State {
     throw Error(fmt::format("technique '{}': {}", technique, message));
   }
 
-  SlotState makeSlot(const OpenTechnique& technique, const void* parameters) {
-    SlotState slot;
-    slot.name = technique.registered->declaration.name;
-    guarded(slot.name, [&] {
-      slot.technique = technique.entry->create(parameters);
+  std::unique_ptr<SlotState> makeSlot(const OpenTechnique& technique, const void* parameters) {
+    auto slot = std::make_unique<SlotState>();
+    slot->name = technique.registered->declaration.name;
+    slot->entry = technique.entry;
+    guarded(slot->name, [&] {
+      slot->parameters = technique.entry->makeParameters();
+      copyValues(*technique.entry->parameters, slot->parameters.get(), parameters);
+      slot->technique = technique.entry->create(slot->parameters.get());
       if (plan.has(Rule::receivers)) {
-        setUpTechnique(slot, technique, parameters);
+        setUpTechnique(*slot, technique);
       } else {
-        slot.visibility = fullyLit;  // nothing can be shadowed: nothing runs
+        slot->visibility = fullyLit;  // nothing can be shadowed: nothing runs
       }
-      if (slot.support.ok()) setUpShading(slot);
+      if (slot->support.ok()) setUpShading(*slot);
       messages.throwIfError("set-up");
     });
     return slot;
+  }
+
+  std::unique_ptr<SlotState> makePicture(const std::shared_ptr<TextureResource>& visibility) {
+    auto slot = std::make_unique<SlotState>();
+    slot->name = visibility->name;
+    slot->visibility = visibility;
+    requireVisibility(visibility->info);
+    setUpShading(*slot);
+    messages.throwIfError("set-up of a picture");
+    return slot;
+  }
+
+  /// Whether the slot can go on with these values: the technique is the same, and only uniform ones differ.
+  static bool serves(const SlotState& slot, const OpenTechnique& technique, const void* parameters) {
+    if (slot.entry != technique.entry || slot.name != technique.registered->declaration.name) return false;
+    const std::vector<Field>& fields = technique.entry->parameters->fields();
+    return std::all_of(fields.begin(), fields.end(), [&](const Field& field) {
+      return field.binding == Binding::uniform || equalValue(field, slot.parameters.get(), parameters);
+    });
+  }
+
+  static void writeParameters(const SlotState& slot, const void* parameters) {
+    for (const Field& field : slot.entry->parameters->fields()) {
+      if (field.binding == Binding::uniform) copyValue(field, slot.parameters.get(), parameters);
+    }
+    if (slot.graph) slot.graph->uniforms().write(slot.block, parameterBlockBytes(*slot.entry->parameters, parameters));
   }
 };
 
@@ -215,14 +263,56 @@ void Session::moveInstances(const std::vector<glm::dmat4>& worlds) {
   ++state_->revisions[Input::geometry];
 }
 
+void Session::restrictReceivers(const Image& pixels) {
+  Restriction& restriction = *state_->passes.restriction;
+  const GLuint texture = restriction.pixels->object.name();
+  const glm::ivec2 size = state_->setup.outputSize;
+  if (pixels.data.empty()) {
+    const float one = 1.0f;
+    glClearTexImage(texture, 0, GL_RED, GL_FLOAT, &one);
+    restriction.region = glm::ivec4(0, 0, size);
+  } else if (pixels.width == size.x && pixels.height == size.y && pixels.channels == 1) {
+    const glm::ivec2 rows = rowsWithAny(pixels);
+    const int count = rows.y - rows.x;
+    if (count > 0) {
+      glTextureSubImage2D(texture, 0, 0, rows.x, size.x, count, GL_RED, GL_FLOAT, pixels.data.data() + pixels.index(0, rows.x));
+    }
+    restriction.region = {0, rows.x, size.x, count};
+  } else {
+    throw Error(
+        fmt::format("receivers are restricted by {}x{} pixels of {} channels; it must be one channel of the output's "
+                    "size, {}x{}",
+                    pixels.width, pixels.height, pixels.channels, size.x, size.y));
+  }
+  ++restriction.pixels->revision;
+}
+
 Slot Session::addSlot(const OpenTechnique& technique, const std::shared_ptr<const void>& parameters) {
   state_->slots.push_back(state_->makeSlot(technique, parameters.get()));
   return {state_->slots.size() - 1};
 }
 
 void Session::replaceSlot(Slot slot, const OpenTechnique& technique, const std::shared_ptr<const void>& parameters) {
-  SlotState made = state_->makeSlot(technique, parameters.get());
-  state_->at(slot) = std::move(made);
+  state_->slots.at(slot.index) = state_->makeSlot(technique, parameters.get());
+}
+
+bool Session::setParameters(Slot slot, const OpenTechnique& technique, const std::shared_ptr<const void>& parameters) {
+  if (!State::serves(state_->at(slot), technique, parameters.get())) {
+    replaceSlot(slot, technique, parameters);
+    return true;
+  }
+  State::writeParameters(state_->at(slot), parameters.get());
+  return false;
+}
+
+Slot Session::addPicture(const std::shared_ptr<TextureResource>& visibility) {
+  state_->slots.push_back(state_->makePicture(visibility));
+  return {state_->slots.size() - 1};
+}
+
+void Session::replacePicture(Slot slot, const std::shared_ptr<TextureResource>& visibility) {
+  auto made = state_->makePicture(visibility);
+  state_->slots.at(slot.index) = std::move(made);
 }
 
 void Session::removeSlots() {
@@ -292,6 +382,14 @@ std::vector<std::shared_ptr<TextureResource>> Session::textures(Slot slot) const
   }
   std::erase_if(all, [](const auto& texture) { return texture->info.format == Format::rg32ui; });
   return all;
+}
+std::optional<std::size_t> Session::instanceAt(glm::ivec2 pixel) const {
+  const glm::ivec2 size = outputSize();
+  if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y) return std::nullopt;
+  std::array<std::uint32_t, 2> ids{~0U, ~0U};
+  glGetTextureSubImage(state_->shared.resource(state_->passes.gbuffer.ids)->object.name(), 0, pixel.x, pixel.y, 0, 1, 1, 1,
+                       GL_RG_INTEGER, GL_UNSIGNED_INT, sizeof(ids), ids.data());
+  return ids[0] < scene().instances.size() ? std::optional<std::size_t>(ids[0]) : std::nullopt;
 }
 Image Session::receiverMask() const {
   return state_->shared.read(state_->passes.gbuffer.mask);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,11 +58,25 @@ class Session {
   void moveInstances(const std::vector<glm::dmat4>& worlds);
 
   /// Sets a technique up. Its refusal, if any, is told by `refusal`; a refused slot renders nothing. Throws Error when set-up
-  /// fails. `parameters` are of the technique's entry (Registry::parameters).
+  /// fails. `parameters` are of the technique's entry (Registry::parameters); the slot keeps a copy of their values.
   Slot addSlot(const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
   /// Sets another technique or other parameters up in a slot's place. If that throws, the slot stays as it was.
   void replaceSlot(Slot slot, const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
+  /// Other values for the parameters of a slot's technique. Where only `uniform` ones differ nothing is set up and nothing is
+  /// compiled: the block is written, and the passes that read it run again at the next frame. Returns whether the slot was set
+  /// up anew; if that throws, the slot stays as it was.
+  bool setParameters(Slot slot, const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
+  /// A slot without a technique: shows a visibility that is made elsewhere, and again whenever its revision rises. r16f or
+  /// r32f, the output's size; throws Error for another. runTechnique does nothing for it.
+  Slot addPicture(const std::shared_ptr<TextureResource>& visibility);
+  /// Another visibility in such a slot's place.
+  void replacePicture(Slot slot, const std::shared_ptr<TextureResource>& visibility);
   void removeSlots();
+
+  /// Receivers are only looked for where `pixels` (one channel, the output's size) is above 0.5: the receiver mask is
+  /// intersected with it, so that techniques work on a part of the picture. An empty image: everywhere again. Throws Error for
+  /// another size.
+  void restrictReceivers(const Image& pixels);
 
   const Support& support(Slot slot) const;
   /// Facts as of the last frame.
@@ -85,6 +100,8 @@ class Session {
   const TextureResource& shadedTexture(Slot slot) const;
   /// Everything that can be looked at: the shared passes' textures, then the slot's own. Integer textures are left out.
   std::vector<std::shared_ptr<TextureResource>> textures(Slot slot) const;
+  /// Of the last frame: the instance that the camera sees at a pixel (rows from the top); none for the background, and outside.
+  std::optional<std::size_t> instanceAt(glm::ivec2 pixel) const;
   Image receiverMask() const;
   Image positions() const;  ///< relative to the camera, world axes; 4 channels, see GBuffer
   Image normals() const;    ///< 4 channels

@@ -47,7 +47,7 @@ class Pcf final : public Technique {
   }
 
  private:
-  Parameters p_;
+  const Parameters& p_;
 };
 
 }  // namespace

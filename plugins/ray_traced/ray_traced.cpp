@@ -19,10 +19,9 @@ struct Parameters {
 };
 
 ParameterTable<Parameters> parameterTable() {
-  return {
-      integer("samples", &Parameters::samples, {.min = 1, .max = 65536, .unit = "rays"}, Binding::structure, "rays a pixel"),
-      integer("seed", &Parameters::seed, {.min = 0, .max = 2147483647}, Binding::structure,
-              "of the scrambles: other seeds, other noise")};
+  return {integer("samples", &Parameters::samples, {.min = 1, .max = 65536, .unit = "rays"}, Binding::uniform, "rays a pixel"),
+          integer("seed", &Parameters::seed, {.min = 0, .max = 2147483647}, Binding::uniform,
+                  "of the scrambles: other seeds, other noise")};
 }
 
 class RayTraced final : public Technique {
@@ -33,7 +32,6 @@ class RayTraced final : public Technique {
 
   Outputs setup(GraphBuilder& graph, const Frame& frame, const EffectPlan& plan) override {
     const bool penumbra = plan.has(Effect::penumbra);
-    graph.facts().samples = penumbra ? p_.samples : 1;
     const Buffer built = graph.buffer("acceleration structure", sizeof(int));
     const auto tracer = std::make_shared<Tracer>();
     // Casters that may be very near to the light: coordinates relative to it keep their distance's digits.
@@ -49,8 +47,8 @@ class RayTraced final : public Technique {
     graph.cpu("trace", {.inputs = {Input::geometry, Input::light, Input::camera},
                         .reads = {g.position, g.normal, g.ids, g.mask},
                         .writes = {visibility},
-                        .after = {built},
-                        .run = [=, p = p_](CpuContext& context) { trace(context, *tracer, g, visibility, penumbra, p); }});
+                        .after = {built, frame.parameters},
+                        .run = [=, &p = p_](CpuContext& context) { trace(context, *tracer, g, visibility, penumbra, p); }});
     return {.visibility = visibility};
   }
 
@@ -67,6 +65,7 @@ class RayTraced final : public Technique {
     const auto width = static_cast<std::size_t>(frame.outputSize.x);
     std::vector<std::uint64_t> rays(static_cast<std::size_t>(frame.outputSize.y), 0);
     const int samples = penumbra ? p.samples : 1;
+    context.facts().samples = samples;
 
     parallelFor(rays.size(), [&](std::size_t row) {
       ShadowRays batch(tracer);
@@ -94,7 +93,7 @@ class RayTraced final : public Technique {
     context.write(target, visibility);
   }
 
-  Parameters p_;
+  const Parameters& p_;
 };
 
 }  // namespace

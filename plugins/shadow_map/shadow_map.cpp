@@ -23,7 +23,7 @@ class ShadowMap final : public Technique {
   }
 
  private:
-  DepthMapParameters map_;
+  const DepthMapParameters& map_;
 };
 
 }  // namespace

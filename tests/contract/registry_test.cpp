@@ -90,6 +90,18 @@ TEST(Registration, OfANameThatTwoFilesRegisterNeitherCounts) {
   }
 }
 
+TEST(Registration, ANameRegisteredTwiceSpeaksAgainstBothFiles) {
+  const PluginFolder one("trace");
+  const PluginFolder two("trace");
+  const Registry registry({one.path(), two.path()});
+  const auto against = [&](const PluginFolder& file, const PluginFolder& other) {
+    return ElementsAre(
+        AllOf(HasSubstr(file.json().string() + ": /techniques/trace: "), HasSubstr("registered by " + other.json().string())));
+  };
+  EXPECT_THAT(linesOf(registry.problemsOf(one.json()).list()), against(one, two));
+  EXPECT_THAT(linesOf(registry.problemsOf(two.json()).list()), against(two, one));
+}
+
 TEST(Registration, ABrokenFileCostsOnlyItself) {
   const PluginFolder broken("trace");
   broken.setJson(R"({"library": "trace", "techniques": {"trace": {"titel": "t", "entry": 3}}, "more": 1})");

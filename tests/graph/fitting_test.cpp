@@ -89,8 +89,9 @@ MapDepths mapDepths(const SessionSetup& setup, const DepthMapParameters& paramet
   const std::vector<Bounds> bounds = survey(setup.scene, setup.light, setup.camera, setup.outputSize).instanceBounds;
   const EffectPlan plan =
       planEffects(survey(setup.scene, setup.light, setup.camera, setup.outputSize), setup.light, setup.camera);
+  const Buffer values = graph.builder().buffer("Parameters", 16);
   const Texture map =
-      lightDepth(graph.builder(), {setup.outputSize, setup.light, passes.gbuffer, 16384}, parameters, plan, 0.0).map;
+      lightDepth(graph.builder(), {setup.outputSize, setup.light, passes.gbuffer, 16384, values}, parameters, plan, 0.0).map;
   graph.compile(std::span(&map, 1));
   const GpuScene gpu(setup.scene);
   graph.run({setup.scene, bounds, gpu, setup.light, setup.camera, setup.outputSize, 0.0}, {}, {});

@@ -45,6 +45,18 @@ std::string keyIn(const std::string& bytes) {
   return bytes.substr(16, length);
 }
 
+TEST_F(CachedReference, ALightsNameDoesNotMatter) {
+  const auto named = [](const std::string& name) {
+    return R"({"lights": [{"type": "spot", "position": [1, 6, 2], "target": [0, 0, 0], "cone_half_angle_degrees": 40, "name": ")" +
+           name + "\"}]}";
+  };
+  render(named("sun"));
+  const Json before = records(folder_ / "out/results.jsonl").at(0)["job"];
+  render(named("lamp"));
+  EXPECT_EQ(files().size(), 1U);
+  EXPECT_EQ(records(folder_ / "out/results.jsonl").at(0)["job"], before);
+}
+
 TEST_F(CachedReference, TheSecondRunReadsIt) {
   render();
   ASSERT_EQ(files().size(), 1U);

@@ -17,7 +17,8 @@ import jsonschema
 
 SCENES = [{"builtin": "half_plane", "blocker_height": 0.5}, {"builtin": "strips"}, {"builtin": "square"},
           {"builtin": "sphere_grid", "count": 7}, {"builtin": "pillars"}, {"builtin": "layers"},
-          {"file": "x.glb"}, {"file": "x.glb", "cast": ["a"], "receive": []},
+          {"builtin": "animated", "move": {"a": [1, 2, 3]}, "time": 1.5},
+          {"file": "x.glb"}, {"file": "x.glb", "cast": ["a"], "receive": [], "move": {"b": [0, 0.5, -1]}, "time": 0},
           [{"builtin": "strips"}, {"file": "x.glb"}]]
 
 LIGHTS = [{"type": "spot", "position": [6, 10, 4], "target": [0, 0, 0], "cone_half_angle_degrees": 30,

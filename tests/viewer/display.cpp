@@ -7,6 +7,8 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "gnomon/base/error.h"
@@ -44,19 +46,29 @@ void sleepMilliseconds(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
-Display::Display() {
+Display::Display(int dpi) {
   int ends[2];
   if (pipe(ends) != 0) throw Error("no pipe");
-  server_ = start({"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"}, [&] {
-    close(ends[0]);
-    sendAllTo("/dev/null");
-  });
+  server_ = start({"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x1024x24", "-nolisten", "tcp",
+                   "-noreset"},  // else it starts over, and refuses who comes meanwhile, whenever its last client leaves
+                  [&] {
+                    close(ends[0]);
+                    sendAllTo("/dev/null");
+                  });
   close(ends[1]);
   char c = 0;
   while (read(ends[0], &c, 1) == 1 && c != '\n') name_ += c;  // the server says which display it took
   close(ends[0]);
   if (name_.empty()) throw Error("Xvfb did not start; scripts/setup installs it");
   name_ = ":" + name_;
+  if (dpi == 96) return;
+  // As desktops do it: the resource that programs ask for.
+  const std::vector<std::string> words{
+      "xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER", "Xft.dpi:\t" + std::to_string(dpi) + "\n"};
+  const pid_t child = start(words, [&] { setenv("DISPLAY", name_.c_str(), 1); });
+  int status = 0;
+  waitpid(child, &status, 0);
+  if (status != 0) throw Error("xprop could not set the screen's density; scripts/setup installs it");
 }
 
 Display::~Display() {
@@ -65,8 +77,8 @@ Display::~Display() {
 }
 
 Viewer::Viewer(const std::string& display, const std::filesystem::path& folder, const std::vector<std::string>& arguments)
-    : display_(display), log_(folder / "viewer.log") {
-  std::vector<std::string> words{std::string(GNOMON_BINARY_DIR) + "/bin/gnomon-view"};
+    : display_(display), log_(folder / "viewer.log"), frameLog_(folder / "frames.jsonl") {
+  std::vector<std::string> words{std::string(GNOMON_BINARY_DIR) + "/bin/gnomon-view", "--frame-log", frameLog_.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   child_ = start(words, [&] {
     if (chdir(folder.c_str()) != 0) _exit(126);
@@ -101,15 +113,38 @@ std::string Viewer::errors() const {
   return readFile(log_);
 }
 
+std::vector<Json> Viewer::frames() const {
+  std::vector<Json> all;
+  std::ifstream in(frameLog_);
+  for (std::string line; std::getline(in, line) && !in.eof();) all.push_back(Json::parse(line));  // the last may be half a line
+  return all;
+}
+
+Json Viewer::lastFrame() const {
+  const std::vector<Json> all = frames();
+  return all.empty() ? Json() : all.back();
+}
+
+bool Viewer::untilFrame(const std::function<bool(const Json&)>& wanted) const {
+  return eventually([&] {
+    const Json last = lastFrame();
+    return !last.is_null() && wanted(last);
+  });
+}
+
 void Viewer::keys(const std::vector<std::string>& names) const {
   std::vector<std::string> words{"key", "--delay", "150"};
   words.insert(words.end(), names.begin(), names.end());
-  if (!xdotool({"search", "--onlyvisible", "--name", "Gnomon: ", "windowfocus"}) || !xdotool(words)) {
-    throw Error("xdotool could not send the keys");
+  xdotool({{"search", "--onlyvisible", "--name", "Gnomon: ", "windowfocus"}, words});
+}
+
+void Viewer::xdotool(const std::vector<std::vector<std::string>>& commands) const {
+  for (const auto& command : commands) {
+    if (!tool(command)) throw Error("xdotool could not " + command.at(0));
   }
 }
 
-bool Viewer::xdotool(std::vector<std::string> words) const {
+bool Viewer::tool(std::vector<std::string> words) const {
   words.insert(words.begin(), "xdotool");
   const pid_t child = start(words, [&] {
     setenv("DISPLAY", display_.c_str(), 1);
@@ -121,7 +156,8 @@ bool Viewer::xdotool(std::vector<std::string> words) const {
 }
 
 void Viewer::waitForWindow() const {
-  const auto there = [&] { return xdotool({"search", "--onlyvisible", "--name", "Gnomon: "}); };
+  // The first frame, not only the window: keys that come before it find nobody listening.
+  const auto there = [&] { return tool({"search", "--onlyvisible", "--name", "Gnomon: "}) && !lastFrame().is_null(); };
   if (!eventually(there)) throw Error("the viewer's window does not come: " + errors());
 }
 

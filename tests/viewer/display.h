@@ -4,15 +4,19 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "gnomon/base/json.h"
 
 namespace gnomon::test {
 
 /// An Xvfb of its own for the life of the object.
 class Display {
  public:
-  Display();
+  /// `dpi` is what the screen says of itself.
+  explicit Display(int dpi = 96);
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
@@ -36,16 +40,25 @@ class Viewer {
   /// Waits up to a minute; 128 + signal for a program that a signal ended, -1 for one that did not end.
   int exitCode();
   std::string errors() const;
+  /// Every frame that was drawn so far, as --frame-log writes them.
+  std::vector<Json> frames() const;
+  /// The last of them; null before the first.
+  Json lastFrame() const;
+  /// Waits up to half a minute for a frame of which `wanted` is true.
+  bool untilFrame(const std::function<bool(const Json&)>& wanted) const;
   /// Sends real keys to its window through the display, as xdotool names them.
   void keys(const std::vector<std::string>& names) const;
+  /// One xdotool command after another on its window, which must be on screen.
+  void xdotool(const std::vector<std::vector<std::string>>& commands) const;
   /// Waits up to half a minute for the window.
   void waitForWindow() const;
 
  private:
-  bool xdotool(std::vector<std::string> words) const;
+  bool tool(std::vector<std::string> words) const;
 
   std::string display_;
   std::filesystem::path log_;
+  std::filesystem::path frameLog_;
   pid_t child_ = 0;
   int status_ = -1;
   bool ended_ = false;

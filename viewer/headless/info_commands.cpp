@@ -45,20 +45,20 @@ FileKind kindOf(const std::filesystem::path& file) {
              : FileKind::runConfig;
 }
 
-void validateTechniqueFile(const std::filesystem::path& file, Problems& problems) {
-  const Registry registry({file.parent_path().empty() ? "." : file.parent_path()});
-  Problems own;
-  for (const Problem& p : registry.problems().list()) {
-    if (std::filesystem::path(p.file).filename() == file.filename()) own.add(file.string(), p.pointer, p.message);
-  }
-  problems.append(own);
+/// Beside the other files of its folder and of the technique directories, as a program would see it.
+void validateTechniqueFile(const CommonOptions& common, const std::filesystem::path& file, Problems& problems) {
+  std::vector<std::filesystem::path> directories = techniqueDirectories(common);
+  directories.push_back(file.parent_path().empty() ? "." : file.parent_path());
+  Registry registry(directories);
+  const Problems own = registry.problemsOf(file);
+  for (const Problem& p : own.list()) problems.add(file.string(), p.pointer, p.message);
   if (!own.empty()) return;
-  Registry opened({file.parent_path().empty() ? "." : file.parent_path()});
-  for (const RegisteredTechnique& t : opened.techniques()) {
-    if (t.file.filename() != file.filename()) continue;
+  for (const RegisteredTechnique& t : registry.techniques()) {
+    std::error_code ignored;
+    if (!std::filesystem::equivalent(t.file, file, ignored)) continue;
     try {
-      const OpenTechnique open = opened.open(t.declaration.name);
-      opened.parameters(open, Json::object(), {}, problems);
+      const OpenTechnique open = registry.open(t.declaration.name);
+      registry.parameters(open, Json::object(), {}, problems);
     } catch (const InputError& error) {
       for (const Problem& p : error.problems()) problems.add(p.file, p.pointer, p.message);
     }
@@ -153,7 +153,7 @@ int validateCommand(const CommonOptions& common, const std::vector<std::filesyst
           resolveRuns(file, registry, problems);
           break;
         case FileKind::techniqueFile:
-          validateTechniqueFile(file, problems);
+          validateTechniqueFile(common, file, problems);
           break;
         case FileKind::gltf:
           for (const std::string& warning : loadGltf(file).warnings) log::warning(file.string() + ": " + warning);
@@ -165,7 +165,7 @@ int validateCommand(const CommonOptions& common, const std::vector<std::filesyst
     } catch (const InputError& error) {
       for (const Problem& p : error.problems()) problems.add(p.file, p.pointer, p.message);
     } catch (const Error& error) {
-      problems.add(file.string(), "", error.what());
+      problems.add("", "", error.what());  // names the file
     }
   }
   problems.unique().throwIfAny();

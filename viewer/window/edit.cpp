@@ -58,30 +58,4 @@ bool stepValue(const Field& field, void* parameters, int steps) {
   }
 }
 
-void resetValue(const Field& field, void* parameters, const void* defaults) {
-  const void* from = field.find(defaults);
-  if (from == nullptr) return;
-  void* to = field.make(parameters);
-  switch (field.type) {
-    case FieldType::boolean:
-      assign(to, *static_cast<const bool*>(from));
-      break;
-    case FieldType::integer:
-    case FieldType::choice:
-      assign(to, *static_cast<const int*>(from));
-      break;
-    case FieldType::real32:
-      assign(to, *static_cast<const float*>(from));
-      break;
-    case FieldType::real64:
-      assign(to, *static_cast<const double*>(from));
-      break;
-    case FieldType::size:
-      assign(to, *static_cast<const glm::ivec2*>(from));
-      break;
-    default:
-      break;
-  }
-}
-
 }  // namespace gnomon

@@ -9,7 +9,4 @@ namespace gnomon {
 /// choices and booleans to the next. Stays in the field's range. Returns whether anything changed.
 bool stepValue(const Field& field, void* parameters, int steps);
 
-/// The field's value in `defaults`.
-void resetValue(const Field& field, void* parameters, const void* defaults);
-
 }  // namespace gnomon

@@ -1,16 +1,20 @@
-// What the viewer hands over: screenshots, and the view as a run config.
+// What the viewer hands over: screenshots, captures, the view as a run config, and what a frame was.
 #include <epoxy/gl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app.h"
 #include "gnomon/base/files.h"
 #include "gnomon/base/json.h"
 #include "gnomon/image/image_io.h"
+#include "gnomon/run/pictures.h"
+#include "gnomon/run/scene_choice.h"
 
 namespace gnomon {
 
@@ -25,35 +29,105 @@ std::string timeStamp() {
   return text.data();
 }
 
+/// "gnomon-TIME.ending", or with a number behind the time where that exists: two in one second are two.
+std::filesystem::path freshPath(const std::string& ending) {
+  const std::string stem = "gnomon-" + timeStamp();
+  std::filesystem::path path = stem + ending;
+  for (int i = 2; std::filesystem::exists(path); ++i) path = fmt::format("{}-{}{}", stem, i, ending);
+  return path;
+}
+
+std::uint64_t residentBytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::uint64_t pages = 0;
+  std::uint64_t resident = 0;
+  statm >> pages >> resident;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// "depth map" -> "depth_map": what every file system takes.
+std::string fileName(std::string name) {
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') c = '_';
+  }
+  return name;
+}
+
+std::vector<NamedChannel> channelsOf(const Image& image) {
+  static constexpr std::array<const char*, 4> kNames{"R", "G", "B", "A"};
+  std::vector<NamedChannel> channels;
+  for (int c = 0; c < image.channels; ++c) {
+    Image plane(image.width, image.height);
+    for (std::size_t i = 0; i < plane.pixels(); ++i)
+      plane.data[i] = image.data[i * static_cast<std::size_t>(image.channels) + static_cast<std::size_t>(c)];
+    channels.push_back({kNames[static_cast<std::size_t>(c)], std::move(plane)});
+  }
+  return channels;
+}
+
 }  // namespace
 
 void App::saveScreenshot() {
   try {
-    const std::filesystem::path path = "gnomon-" + timeStamp() + ".png";
+    const std::filesystem::path path = freshPath(".png");
     writeScreenshot(path);
     say("screenshot: " + path.string());
+  } catch (const std::exception& error) {
+    say(error.what());
+  }
+  dirty_ = true;
+}
+
+void App::captureAll() {
+  try {
+    if (stages_.empty() || !prepareReference()) throw Error("a capture needs the reference, and there is none");
+    while (!hasReference()) reference_->refine(100.0);
+    Stage& stage = stageOf(1);
+    Session& session = stage.session();
+    const std::filesystem::path folder = freshPath("");
+    std::size_t written = 0;
+    const auto writeTextures = [&](Slot slot, const std::string& stem, std::size_t from) {
+      const auto textures = session.textures(slot);
+      for (std::size_t k = from; k < textures.size(); ++k)
+        writeExr(folder / fmt::format("{}-{}.exr", stem, fileName(textures[k]->name)), channelsOf(readTexture(*textures[k])));
+      return textures.size();
+    };
+    const std::size_t shared = writeTextures(*stage.picture(), "scene", 0);
+    for (std::size_t i = 0; i < document_.techniques.size(); ++i) {
+      const ResolvedTechnique& technique = document_.techniques[i].technique;
+      if (!stage.render(i, technique, false)) continue;
+      const Slot slot = *stage.entry(i).slot;
+      const std::string stem = fmt::format("{}-{}", i + 1, technique.name());
+      writePictures(folder, stem, {"shaded"}, true,
+                    {session.shaded(slot), session.visibility(slot), reference_->halves(), session.receiverMask(),
+                     reference_->classes(), session.positions(), session.normals()},
+                    session);
+      writeTextures(slot, stem, shared);
+      ++written;
+    }
+    say(fmt::format("captured {} techniques, reference of {} rays a pixel: {}/", written, reference_->samples(),
+                    folder.string()));
   } catch (const std::exception& error) {
     say(error.what());
   }
 }
 
 std::string App::stateAsConfig() const {
-  const ViewerTechnique& t = techniques_[current_];
+  const ViewerTechnique& t = document_.techniques[current_];
+  const RunConfig& run = document_.run.config;
   Json config;
-  config["name"] = run_.config.name + "-view";
-  const SceneChoice& scene = run_.config.scenes[0];
-  if (scene.builtin.empty()) {
-    config["scene"]["file"] = std::filesystem::absolute(scene.file).string();
-    if (scene.cast) config["scene"]["cast"] = *scene.cast;
-    if (scene.receive) config["scene"]["receive"] = *scene.receive;
-  } else {
-    const BuiltinScene* builtin = findBuiltinScene(scene.builtin);
-    config["scene"]["builtin"] = scene.builtin;
-    config["scene"].update(writeObject(*builtin->table, &scene.parameters));
+  config["name"] = run.name + "-view";
+  SceneChoice scene = run.scenes.at(document_.scene);
+  if (!scene.file.empty()) scene.file = std::filesystem::absolute(scene.file);
+  scene.moves.clear();
+  for (const auto& [node, by] : pose_.moves) {
+    if (by != glm::dvec3(0.0)) scene.moves.emplace_back(node, by);
   }
-  config["plan"] = writeObject(*planOverridesTable(), &run_.config.plan);
-  config["camera"] = writeObject(*cameraTable(), &camera_);
-  config["lights"] = Json::array({writeObject(*lightTable(), &light_)});
+  scene.time = pose_.time;
+  config["scene"] = writeSceneChoice(scene);
+  config["plan"] = writeObject(*planOverridesTable(), &run.plan);
+  config["camera"] = writeObject(*cameraTable(), &pose_.camera);
+  config["lights"] = Json::array({writeObject(*lightTable(), &pose_.light)});
   config["output"] = {{"size", {size_.x, size_.y}}, {"images", {"shaded", "visibility", "error"}}};
   config["techniques"] = Json::array({{{"technique", t.technique.name()}, {"parameters", t.technique.parametersJson()}}});
   return config.dump(2) + "\n";
@@ -61,7 +135,7 @@ std::string App::stateAsConfig() const {
 
 void App::saveConfig() {
   try {
-    const std::filesystem::path path = "gnomon-" + timeStamp() + ".json";
+    const std::filesystem::path path = freshPath(".json");
     writeFileAtomically(path, stateAsConfig());
     say("saved: gnomon render " + path.string());
   } catch (const std::exception& error) {
@@ -85,6 +159,31 @@ void App::writeScreenshot(const std::filesystem::path& path) const {
     }
   }
   writePng(path, image);
+}
+
+std::string App::frameLine() const {
+  Json line;
+  line["frame"] = frames_;
+  line["events"] = events_;
+  line["technique"] = document_.techniques[current_].technique.name();
+  line["shown"] = lastGood_ ? Json(document_.techniques[*lastGood_].technique.name()) : Json(nullptr);
+  line["compiling"] = compiling_;
+  line["size"] = {size_.x, size_.y};
+  line["scale"] = scale_;
+  line["reduction"] = moving() ? reduction_ : 1;
+  std::uint64_t passes = 0;
+  for (const auto& [reduction, staged] : stages_) passes += staged.stage->passesRun();
+  line["passes_run"] = passes;
+  line["gl_objects"] = gl::liveObjects();
+  line["resident_bytes"] = residentBytes();
+  line["reference_samples"] = reference_ ? reference_->samples() : 0;
+  const auto& error = document_.techniques[current_].error;
+  line["rmse"] = error && error->rmse ? Json(*error->rmse) : Json(nullptr);
+  line["message"] = message_;
+  line["troubles"] = Json::object();
+  for (const auto& [what, text] : troubles_) line["troubles"][what] = text;
+  line["failure"] = stages_.contains(1) ? stages_.at(1).stage->entry(current_).failure : std::string();
+  return line.dump();
 }
 
 }  // namespace gnomon

@@ -1,4 +1,4 @@
-// Every key of the viewer, in one table: input, the help overlay and `--help` are made from it.
+// Every key of the viewer, in one table: input, the help overlay, `--help` and docs/keys.md are made from it.
 #pragma once
 
 #include <span>
@@ -23,11 +23,17 @@ enum class Action {
   split,
   difference,
   holdOther,
+  againstReference,
+  measureError,
   nextTexture,
   previousTexture,
   plan,
   times,
-  measureError,
+  nextParameter,
+  previousParameter,
+  increase,
+  decrease,
+  resetParameter,
   frameAll,
   forwards,
   backwards,
@@ -35,16 +41,21 @@ enum class Action {
   rightwards,
   upwards,
   downwards,
+  nextCamera,
+  nextLight,
+  nextScene,
   holdLight,
   largerSource,
   smallerSource,
-  nextParameter,
-  previousParameter,
-  increase,
-  decrease,
-  resetParameter,
+  nextNode,
+  holdNode,
+  play,
+  stepForwards,
+  stepBackwards,
+  resetView,
   reload,
   screenshot,
+  capture,
   saveConfig,
   hideOverlays,
   help,
@@ -52,15 +63,21 @@ enum class Action {
   quit
 };
 
-enum class Held { no, yes };  ///< yes: acts as long as the key is down, and again when it is released
+/// What a key does while it stays down. Toggles must not repeat: a slow machine would turn one press into two.
+enum class Habit {
+  once,
+  repeats,  ///< with the keyboard's repetition
+  held      ///< acts as long as it is down, and again when it is released
+};
 
 struct KeyBinding {
   Action action;
   int key;  ///< GLFW's
   bool control;
-  const char* name;  ///< "Ctrl-S"
-  const char* meaning;
-  Held held = Held::no;
+  const char* name;     ///< "Ctrl-S"
+  const char* meaning;  ///< empty: said at another key of the action
+  Habit habit = Habit::once;
+  const char* heading = "";  ///< of the group that begins here
 };
 
 std::span<const KeyBinding> keyBindings();
@@ -75,5 +92,9 @@ struct MouseHabit {
   const char* meaning;
 };
 std::span<const MouseHabit> mouseHabits();
+
+/// All of it as lines of text, and as the page docs/keys.md.
+std::string keysAsText();
+std::string keysAsMarkdown();
 
 }  // namespace gnomon

@@ -43,16 +43,24 @@ Camera orbited(const Camera& camera, glm::dvec2 drag) {
   return moved;
 }
 
-Camera panned(const Camera& camera, glm::dvec2 drag) {
+glm::dvec3 viewShift(const Camera& camera, const glm::dvec3& point, glm::dvec2 drag) {
   const Axes axes = axesOf(camera);
-  const double distance = glm::length(camera.target - camera.position);
+  const double distance = std::max(glm::dot(point - camera.position, axes.look), camera.near);
   const double height = camera.type == CameraType::orthographic
                             ? camera.height
                             : 2.0 * distance * std::tan(glm::radians(camera.verticalFovDegrees) * 0.5);
-  const glm::dvec3 by = (axes.up * drag.y - axes.right * drag.x) * height;
+  return (axes.right * drag.x - axes.up * drag.y) * height;
+}
+
+glm::dvec3 viewDirection(const Camera& camera) {
+  return -axesOf(camera).look;
+}
+
+Camera panned(const Camera& camera, glm::dvec2 drag) {
+  const glm::dvec3 by = viewShift(camera, camera.target, drag);
   Camera moved = camera;
-  moved.position += by;
-  moved.target += by;
+  moved.position -= by;
+  moved.target -= by;
   return moved;
 }
 
@@ -82,6 +90,19 @@ Camera framing(const Camera& camera, const Bounds& bounds, double aspect) {
   moved.target = bounds.centre();
   moved.position = moved.target - axesOf(camera).look * (radius / std::sin(narrowest));
   if (camera.type == CameraType::orthographic) moved.height = 2.0 * radius / std::min(aspect, 1.0);
+  return moved;
+}
+
+Light shifted(const Light& light, const glm::dvec3& metres) {
+  Light moved = light;
+  moved.position += metres;
+  moved.target += metres;
+  return moved;
+}
+
+Light nearer(const Light& light, double steps) {
+  Light moved = light;
+  moved.position = light.target + (light.position - light.target) * std::pow(0.9, steps);
   return moved;
 }
 

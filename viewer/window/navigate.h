@@ -21,6 +21,15 @@ Camera flown(const Camera& camera, const glm::dvec3& metres);
 /// Looks from the same direction at the whole of `bounds`.
 Camera framing(const Camera& camera, const Bounds& bounds, double aspect);
 
+/// Metres in world axes of a drag in window heights, so that what is at `point` follows the mouse.
+glm::dvec3 viewShift(const Camera& camera, const glm::dvec3& point, glm::dvec2 drag);
+/// Unit, from the target towards the camera.
+glm::dvec3 viewDirection(const Camera& camera);
+
+/// The light and its target by `metres`.
+Light shifted(const Light& light, const glm::dvec3& metres);
+/// Nearer to its target (steps > 0) or farther by a tenth a step.
+Light nearer(const Light& light, double steps);
 /// Turns the light about its target, as orbited() does a camera.
 Light turned(const Light& light, glm::dvec2 drag);
 /// The source's extent times `factor`; a source without any stays so.

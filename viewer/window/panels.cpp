@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+
+#include "gnomon/scene/animation.h"
 
 namespace gnomon {
 
@@ -14,6 +17,7 @@ const glm::vec4 kText(0.95f, 0.95f, 0.93f, 1.0f);
 const glm::vec4 kStrong(1.0f, 0.82f, 0.35f, 1.0f);
 const glm::vec4 kBar(0.35f, 0.62f, 0.85f, 1.0f);
 constexpr float kPad = 8.0f;
+constexpr std::size_t kMostTroubleLines = 14;
 
 std::string cut(const std::string& text, std::size_t length) {
   return text.size() <= length ? text : text.substr(0, length - 1) + "…";
@@ -21,135 +25,187 @@ std::string cut(const std::string& text, std::size_t length) {
 
 }  // namespace
 
-glm::vec2 Panels::textSize(const std::vector<std::string>& lines) const {
+glm::vec2 Panels::boxSize(const std::vector<std::string>& lines) const {
   float width = 0.0f;
   for (const std::string& line : lines) width = std::max(width, o_.textWidth(line));
-  return {width, o_.lineHeight() * static_cast<float>(lines.size())};
+  return glm::vec2(width, o_.lineHeight() * static_cast<float>(lines.size())) + 2.0f * kPad * app_.scale_;
 }
 
 glm::vec2 Panels::box(glm::vec2 at, const std::vector<std::string>& lines) {
-  const glm::vec2 size = textSize(lines);
+  const glm::vec2 end = at + boxSize(lines);
   const float pad = kPad * app_.scale_;
-  o_.rectangle(at, at + size + 2.0f * pad, kBack);
+  o_.rectangle(at, end, kBack);
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    // A leading '!' marks the line that matters.
     const bool strong = !lines[i].empty() && lines[i][0] == '!';
     o_.text(at + glm::vec2(pad, pad + o_.lineHeight() * static_cast<float>(i)), strong ? lines[i].substr(1) : lines[i],
             strong ? kStrong : kText);
   }
-  return at + size + 2.0f * pad;
+  return end;
+}
+
+void Panels::addWrapped(std::vector<std::string>& lines, const std::string& text, float width) const {
+  const bool strong = !text.empty() && text[0] == '!';
+  std::istringstream in(o_.wrapped(strong ? text.substr(1) : text, width - 2.0f * kPad * app_.scale_));
+  for (std::string line; std::getline(in, line);) lines.push_back((strong ? "!" : "") + line);
 }
 
 void Panels::draw(std::size_t shown) {
   if (app_.showHelp_) return help();  // alone: nothing behind it can be read anyway
+  if (app_.texture_ < 0) {            // textures are seen from elsewhere
+    if (app_.held_.contains(Action::holdLight)) lightMarker();
+    nodeMarker();
+  }
   const float bottom = technique(shown);
   if (app_.showTimes_) times();
   if (app_.showPlan_) plan();
   parameters(bottom);
   if (app_.difference_ && app_.texture_ < 0) legend(bottom);
+  troubles();
   bottomLine();
 }
 
+std::string Panels::errorLine(const ViewerTechnique& t) const {
+  if (!app_.measureErrors_ && !app_.againstReference_) return "error  not measured: E";
+  const std::string rays = app_.hasReference()
+                               ? fmt::format("{} of {} rays", app_.reference_->samples(), app_.reference_->wanted())
+                               : std::string("no rays yet");
+  if (!t.error) return app_.troubles_.contains("reference") ? "error  no reference" : "error  (reference: " + rays + ")";
+  if (!t.error->rmse) return "error  nothing here can be shadowed";
+  return fmt::format("error  RMSE {:.4f}, band {:.4f}, bias {:+.4f}  (reference: {})", *t.error->rmse,
+                     t.error->rmseBand.value_or(0.0), t.error->bias.value_or(0.0), rays);
+}
+
+std::vector<std::string> Panels::comparison() const {
+  const std::string& before = app_.document_.techniques[app_.before_].technique.name();
+  if (app_.againstReference_ && !app_.hasReference())
+    return {app_.split_ || app_.difference_ ? "!compared with the reference as soon as nothing moves"
+                                            : "C, X and Space: the reference"};
+  const std::string other = app_.againstReference_ ? "the reference" : before;
+  if (app_.split_) return {fmt::format("left of the divider this, right of it {}", other)};
+  if (app_.difference_) return {fmt::format("V of this minus V of {}", other)};
+  if (app_.againstReference_) return {"C, X and Space: the reference"};
+  return {};
+}
+
 float Panels::technique(std::size_t shown) {
-  const ViewerTechnique& t = app_.techniques_[shown];
+  const ViewerTechnique& t = app_.document_.techniques[shown];
   const std::string set = t.technique.parametersText();
-  std::vector<std::string> lines{fmt::format("!{} of {}  {}{}", shown + 1, app_.techniques_.size(), t.technique.name(),
+  std::string scene = app_.document_.run.sceneName;
+  if (app_.document_.scenes > 1)
+    scene += fmt::format(" (scene {} of {}, O: next)", app_.document_.scene + 1, app_.document_.scenes);
+  std::vector<std::string> lines{fmt::format("!{} of {}  {}{}", shown + 1, app_.document_.techniques.size(), t.technique.name(),
                                              set.empty() ? "" : " (" + set + ")"),
-                                 t.technique.technique.registered->declaration.title + "  on " + app_.run_.sceneName};
-  if (!t.failure.empty()) {
-    lines.push_back("!not shown: " + cut(t.failure, 110));
-  } else {
-    lines.push_back(fmt::format("cost   {:.2f} ms wall, {:.2f} ms cpu (its passes, last time they ran)", t.wallMs, t.cpuMs));
-    lines.push_back(t.error && t.error->rmse ? fmt::format("error  RMSE {:.4f}, band {:.4f}, bias {:+.4f}", *t.error->rmse,
-                                                           t.error->rmseBand.value_or(0.0), t.error->bias.value_or(0.0))
-                                             : std::string("error  not measured for this view: press E"));
+                                 t.technique.technique.registered->declaration.title + "  on " + scene};
+  const float width = static_cast<float>(app_.size_.x);
+  const bool reduced = app_.moving() && app_.reduction_ > 1;
+  const auto staged = app_.stages_.find(reduced ? app_.reduction_ : 1);
+  if (staged != app_.stages_.end()) {
+    const StageEntry& entry = staged->second.stage->entry(shown);
+    if (!entry.failure.empty()) {
+      addWrapped(lines, "!not shown: " + entry.failure, width);
+      if (app_.lastGood_ && *app_.lastGood_ != shown)
+        lines.push_back("what you see is " + app_.document_.techniques[*app_.lastGood_].technique.name());
+    } else {
+      lines.push_back(fmt::format("cost   {:.2f} ms wall, {:.2f} ms cpu{}", entry.wallMs, entry.cpuMs,
+                                  app_.showTimes_ && entry.timed ? " (timed pass by pass)" : ""));
+      lines.push_back(errorLine(t));
+    }
+    if (reduced) {
+      const glm::ivec2 size = staged->second.stage->session().outputSize();
+      lines.push_back(fmt::format("!moving: drawn at 1/{} of the resolution, {}x{}", app_.reduction_, size.x, size.y));
+    }
   }
-  if (app_.split_)
-    lines.push_back(fmt::format("left of the divider this, right of it {}", app_.techniques_[app_.before_].technique.name()));
-  if (app_.difference_)
-    lines.push_back(fmt::format("V of this minus V of {}", app_.techniques_[app_.before_].technique.name()));
-  if (!inspected_.empty()) lines.push_back("!" + inspected_);
+  for (const std::string& line : comparison()) lines.push_back(line);
+  if (const double length = duration(app_.document_.run.scene); length > 0.0)
+    lines.push_back(
+        fmt::format("time   {:.2f} of {:.2f} s{}", app_.pose_.time, length, app_.playing_ ? ", playing" : "  (P plays)"));
+  if (app_.node_) lines.push_back("node   " + app_.nodes_[*app_.node_] + "  (hold M: move)");
+  if (app_.held_.contains(Action::holdLight)) lines.push_back("!" + app_.lightName());
+  if (!inspected_.empty()) addWrapped(lines, "!" + inspected_, width);
   const glm::vec2 end = box({0.0f, 0.0f}, lines);
   techniqueRight_ = end.x;
   return end.y;
 }
 
 void Panels::parameters(float belowTechnique) {
-  const ViewerTechnique& t = app_.techniques_[app_.current_];
+  const ViewerTechnique& t = app_.document_.techniques[app_.current_];
   const auto& fields = t.technique.technique.entry->parameters->fields();
   if (fields.empty()) return;
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const std::string line = fmt::format("{:<20} {}", fields[i].name, valueText(fields[i], t.technique.parameters.get()));
-    lines.push_back((i == app_.parameter_ ? "!→ " : "  ") + line);
+    const std::string value = valueText(fields[i], t.technique.parameters.get());
+    const bool changed = value != valueText(fields[i], t.asWritten.parameters.get());
+    lines.push_back(fmt::format("{}{:<20} {} {}{}", i == app_.parameter_ ? "!→ " : "  ", fields[i].name, value,
+                                fields[i].range.unit, changed ? " *" : ""));
   }
   const Field& chosen = fields[app_.parameter_];
-  lines.push_back(cut(allowedText(chosen), 60));
+  addWrapped(lines, allowedText(chosen), std::max(boxSize(lines).x, o_.textWidth("a change sets the technique up again")));
   lines.push_back(chosen.binding == Binding::structure    ? "a change sets the technique up again"
                   : chosen.binding == Binding::specialise ? "a change compiles a shader"
-                                                          : "a value in shaders");
-  const glm::vec2 size = textSize(lines) + 2.0f * kPad * app_.scale_;
+                                                          : "changes at once, without set-up");
   // Beside the technique's box where there is room, else below it.
-  const float left = static_cast<float>(app_.size_.x) - size.x;
+  const float left = static_cast<float>(app_.size_.x) - boxSize(lines).x;
   box({left, left < techniqueRight_ ? belowTechnique : 0.0f}, lines);
 }
 
 void Panels::plan() {
   std::vector<std::string> lines{"!effect plan"};
-  for (const PlanDecision& d : app_.session_->plan().decisions)
+  for (const PlanDecision& d : app_.plan_.decisions)
     lines.push_back(fmt::format("{:<21} {:<3}  {}", d.name, d.on ? "on" : "off", cut(d.reason, 84)));
-  const glm::vec2 size = textSize(lines) + 2.0f * kPad * app_.scale_;
-  box({0.0f, static_cast<float>(app_.size_.y) - size.y - 2.0f * o_.lineHeight()}, lines);
+  box({0.0f, static_cast<float>(app_.size_.y) - boxSize(lines).y - 2.0f * o_.lineHeight()}, lines);
 }
 
 void Panels::times() {
-  const ViewerTechnique& t = app_.techniques_[app_.current_];
+  if (!app_.stages_.contains(1)) return;
+  const Stage& stage = *app_.stages_.at(1).stage;
+  const StageEntry& e = stage.entry(app_.current_);
   const float line = o_.lineHeight();
   const float pad = kPad * app_.scale_;
   const float width = o_.textWidth("mmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmmm");
-  const float height = line * (static_cast<float>(t.passes.size()) + 5.0f) + 2.0f * pad;
+  const float height = line * (static_cast<float>(e.passes.size()) + 5.0f) + 2.0f * pad;
   const glm::vec2 at(static_cast<float>(app_.size_.x) - width - 2.0f * pad,
                      static_cast<float>(app_.size_.y) - height - 2.0f * line);
   o_.rectangle(at, at + glm::vec2(width + 2.0f * pad, height), kBack);
   glm::vec2 pen = at + pad;
   o_.text(pen, "passes, ms wall (finished after each)", kStrong);
   double longest = 1e-9;
-  for (const PassReport& p : t.passes) longest = std::max(longest, p.wallMs);
-  for (const PassReport& p : t.passes) {
+  for (const PassReport& p : e.passes) longest = std::max(longest, p.wallMs);
+  for (const PassReport& p : e.passes) {
     pen.y += line;
     const float share = static_cast<float>(p.wallMs / longest);
     o_.rectangle({pen.x, pen.y + line * 0.15f}, {pen.x + width * share, pen.y + line * 0.85f},
                  glm::vec4(glm::vec3(kBar), 0.45f));
-    o_.text(pen, fmt::format("{:<26}{:8.3f}{}", cut(p.name, 25), p.wallMs, p.ran ? "" : " skipped"), kText);
+    o_.text(pen, fmt::format("{:<23}{:9.3f}{}", cut(p.name, 22), p.wallMs, p.ran ? "" : " skipped"), kText);
   }
   pen.y += line * 1.3f;
-  const std::size_t memory = t.slot ? app_.session_->memoryBytes(*t.slot) : 0;
+  const std::size_t memory = e.slot && e.failure.empty() ? stage.session().memoryBytes(*e.slot) : 0;
   o_.text(pen,
           fmt::format("memory {:.2f} MB   frame {:.1f} ms", static_cast<double>(memory) / 1e6,
                       app_.frameTimes_.empty() ? 0.0f : app_.frameTimes_.back()),
           kText);
   // History of frame times, the newest on the right; full height is the slowest.
-  float slowest = 1e-6f;
-  for (const float ms : app_.frameTimes_) slowest = std::max(slowest, ms);
-  const float bottom = at.y + height - pad;
+  pen.y += line * 1.2f;
+  const float slowest = app_.frameTimes_.empty() ? 1.0f : *std::max_element(app_.frameTimes_.begin(), app_.frameTimes_.end());
   const float step = width / 120.0f;
-  float x = pen.x + width - step * static_cast<float>(app_.frameTimes_.size());
+  float x = at.x + pad + width - step * static_cast<float>(app_.frameTimes_.size());
   for (const float ms : app_.frameTimes_) {
-    o_.rectangle({x, bottom - 2.2f * line * ms / slowest}, {x + std::max(step - 1.0f, 1.0f), bottom}, kBar);
+    const float h = 1.5f * line * ms / std::max(slowest, 1e-6f);
+    o_.rectangle({x, pen.y + 1.5f * line - h}, {x + std::max(1.0f, step - 1.0f), pen.y + 1.5f * line}, kBar);
     x += step;
   }
 }
 
 void Panels::help() {
-  std::vector<std::string> lines{"!keys"};
+  std::vector<std::string> lines;
   for (const KeyBinding& b : keyBindings()) {
+    if (b.heading[0] != '\0') lines.push_back(std::string("!") + b.heading);
     if (b.meaning[0] != '\0') lines.push_back(fmt::format("{:<10} {}", b.name, b.meaning));
   }
-  lines.push_back("!mouse");
-  for (const MouseHabit& m : mouseHabits()) lines.push_back(fmt::format("{:<10} {}", m.name, m.meaning));
-  // Two columns where one is too high.
+  lines.emplace_back("!Mouse");
+  for (const MouseHabit& m : mouseHabits()) lines.push_back(fmt::format("{:<14} {}", m.name, m.meaning));
+  // As many columns as the height asks for.
   const auto fit =
-      static_cast<std::size_t>(std::max(4.0f, (static_cast<float>(app_.size_.y) - 4.0f * o_.lineHeight()) / o_.lineHeight()));
+      static_cast<std::size_t>(std::max(1.0f, (static_cast<float>(app_.size_.y) - 4.0f * o_.lineHeight()) / o_.lineHeight()));
   const std::size_t columns = (lines.size() + fit - 1) / fit;
   const std::size_t each = (lines.size() + columns - 1) / columns;
   std::vector<std::vector<std::string>> parts;
@@ -157,7 +213,7 @@ void Panels::help() {
   for (std::size_t i = 0; i < lines.size(); i += each) {
     parts.emplace_back(lines.begin() + static_cast<std::ptrdiff_t>(i),
                        lines.begin() + static_cast<std::ptrdiff_t>(std::min(i + each, lines.size())));
-    width += textSize(parts.back()).x + 2.0f * kPad * app_.scale_;
+    width += boxSize(parts.back()).x;
   }
   float x = std::max(0.0f, (static_cast<float>(app_.size_.x) - width) * 0.5f);
   for (const auto& part : parts) x = box({x, 2.0f * o_.lineHeight()}, part).x;
@@ -168,14 +224,32 @@ void Panels::bottomLine() {
   const float y = static_cast<float>(app_.size_.y) - line - kPad * app_.scale_;
   o_.rectangle({0.0f, y - kPad * 0.5f}, glm::vec2(app_.size_), kBack);
   const std::string keys =
-      "F1 keys   ←/→ technique   C split   X difference   E error   V textures   G plan   T times   ↑/↓ +/- parameters";
-  if (app_.compileNotice_) {
-    o_.text({kPad * app_.scale_, y}, "compiling " + app_.techniques_[app_.current_].technique.name() + " ...", kStrong);
-    return;
-  }
+      "F1 keys   ←/→ technique   C split   X difference   R reference   V textures   G plan   T times   ↑/↓ +/- parameters";
+  const bool busy = app_.compiling_;
+  const std::string said =
+      busy ? "compiling " + app_.document_.techniques[app_.shown_].technique.name() + " ..." : app_.message_;
   const auto room = static_cast<std::size_t>(std::max(1.0f, static_cast<float>(app_.size_.x) / o_.textWidth("m") - 2.0f));
-  o_.text({kPad * app_.scale_, y}, app_.message_.empty() ? keys : cut(app_.message_, room),
-          app_.message_.empty() ? kText : kStrong);
+  o_.text({kPad * app_.scale_, y}, said.empty() ? keys : cut(said, room), said.empty() ? kText : kStrong);
+}
+
+void Panels::troubles() {
+  if (app_.troubles_.empty()) return;
+  const float width = 0.9f * static_cast<float>(app_.size_.x);
+  std::vector<std::string> lines;
+  for (const auto& [what, text] : app_.troubles_) {
+    lines.push_back("!" + what + ": what last worked is shown");
+    addWrapped(lines, text, width);
+  }
+  if (lines.size() > kMostTroubleLines) {
+    lines.resize(kMostTroubleLines - 1);
+    lines.emplace_back("…");
+  }
+  const glm::vec2 size = boxSize(lines);
+  const glm::vec2 at(0.5f * (static_cast<float>(app_.size_.x) - size.x),
+                     static_cast<float>(app_.size_.y) - size.y - 2.5f * o_.lineHeight());
+  o_.rectangle(at - 2.0f * app_.scale_, at + size + 2.0f * app_.scale_, {0.75f, 0.18f, 0.12f, 1.0f});
+  o_.rectangle(at, at + size, {0.1f, 0.03f, 0.03f, 1.0f});
+  box(at, lines);
 }
 
 void Panels::legend(float top) {
@@ -192,35 +266,6 @@ void Panels::legend(float top) {
                  at + glm::vec2(width * static_cast<float>(i + 1) / kSteps, line), glm::vec4(colour, 1.0f));
   }
   o_.text(at + glm::vec2(0.0f, 1.1f * line), "-0.5 too dark      0      leak +0.5", kText);
-}
-
-void Panels::lookInto(const TextureResource& texture, PresentView& view) {
-  const Image values = readTexture(texture);
-  const auto channels = static_cast<std::size_t>(values.channels);
-  float low = std::numeric_limits<float>::infinity();
-  float high = -low;
-  std::size_t strange = 0;
-  for (std::size_t i = 0; i < values.data.size(); ++i) {
-    if (channels == 4 && i % 4 == 3) continue;
-    if (!std::isfinite(values.data[i])) {
-      ++strange;
-      continue;
-    }
-    low = std::min(low, values.data[i]);
-    high = std::max(high, values.data[i]);
-  }
-  if (!(low <= high)) low = high = 0.0f;
-  view = {.mode = PresentMode::values,
-          .left = &texture,
-          .range = {low, high > low ? high : low + 1.0f},
-          .channel = channels >= 3 ? -1 : 0};
-  const int x = std::clamp(static_cast<int>(app_.mouse_.x / app_.size_.x * values.width), 0, values.width - 1);
-  const int y = std::clamp(static_cast<int>(app_.mouse_.y / app_.size_.y * values.height), 0, values.height - 1);
-  std::string under;
-  for (int c = 0; c < values.channels; ++c) under += fmt::format(" {:.6g}", values.at(x, y, c));
-  inspected_ = fmt::format("{}  {}x{} {}  black {:.4g}, white {:.4g}{}   ({}, {}):{}", texture.name, values.width,
-                           values.height, formatFacts(texture.info.format).name, low, high,
-                           strange > 0 ? fmt::format(", {} not finite", strange) : "", x, y, under);
 }
 
 }  // namespace gnomon

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,17 +20,29 @@ class Panels {
   void lookInto(const TextureResource& texture, PresentView& view);
 
  private:
-  /// A translucent box with lines of text; returns its lower right corner.
+  /// A translucent box with lines of text, a leading '!' marking those that matter; returns its lower right corner.
   glm::vec2 box(glm::vec2 at, const std::vector<std::string>& lines);
+  glm::vec2 boxSize(const std::vector<std::string>& lines) const;
+  /// Adds `text`, broken into lines no wider than what is left of the window.
+  void addWrapped(std::vector<std::string>& lines, const std::string& text, float width) const;
+
   /// Returns where its box ends.
   float technique(std::size_t shown);
+  std::vector<std::string> comparison() const;
+  std::string errorLine(const ViewerTechnique& t) const;
   void parameters(float belowTechnique);
   void plan();
   void times();
   void help();
   void bottomLine();
   void legend(float top);
-  glm::vec2 textSize(const std::vector<std::string>& lines) const;
+  void troubles();
+  /// The light as it lies in the picture: its source and the line to its target.
+  void lightMarker();
+  void nodeMarker();
+  /// Where a world position is in the window; none behind the camera.
+  std::optional<glm::vec2> project(const glm::dvec3& world) const;
+  void stroke(const glm::dvec3& from, const glm::dvec3& to, const glm::vec4& colour);
 
   App& app_;
   Overlay& o_;

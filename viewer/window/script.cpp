@@ -14,9 +14,9 @@ namespace {
 
 /// Commands and how many words follow.
 const std::map<std::string, std::size_t>& commands() {
-  static const std::map<std::string, std::size_t> table{{"wait", 1},       {"key", 1},   {"hold", 1},  {"release", 1},
-                                                        {"mouse", 2},      {"press", 1}, {"wheel", 1}, {"open", 1},
-                                                        {"screenshot", 1}, {"save", 1},  {"quit", 0}};
+  static const std::map<std::string, std::size_t> table{
+      {"wait", 1}, {"key", 1},        {"hold", 1}, {"release", 1}, {"mouse", 2},  {"press", 1}, {"wheel", 1},
+      {"open", 1}, {"screenshot", 1}, {"save", 1}, {"refine", 0},  {"resize", 2}, {"quit", 0}};
   return table;
 }
 
@@ -46,7 +46,7 @@ std::string fault(const std::vector<std::string>& words) {
   const bool key = words[0] == "key" || words[0] == "hold" || (words[0] == "release" && !isButton(words[1]));
   if (key && bindingNamed(words[1]) == nullptr) return fmt::format("no key is named '{}'; --help lists them", words[1]);
   if (words[0] == "press" && !isButton(words[1])) return "'press' takes left or right";
-  const bool numbers = words[0] == "wait" || words[0] == "mouse" || words[0] == "wheel";
+  const bool numbers = words[0] == "wait" || words[0] == "resize" || words[0] == "mouse" || words[0] == "wheel";
   for (std::size_t i = 1; numbers && i < words.size(); ++i) {
     if (!isNumber(words[i])) return fmt::format("'{}' is no number", words[i]);
   }
@@ -76,11 +76,17 @@ void Script::play(App& app) {
     --waiting_;
     return;
   }
+  if (refining_ && !app.isRefined()) return;
+  refining_ = false;
   while (active()) {
     const std::vector<std::string>& words = lines_[next_++];
     const std::string& command = words[0];
     if (command == "wait") {
       waiting_ = std::stoi(words[1]) - 1;
+      return;
+    }
+    if (command == "refine") {
+      refining_ = true;
       return;
     }
     if (command == "key") {
@@ -102,6 +108,8 @@ void Script::play(App& app) {
       app.wheel(std::stod(words[1]));
     } else if (command == "open") {
       app.open(words[1]);
+    } else if (command == "resize") {
+      size_ = glm::ivec2(std::stoi(words[1]), std::stoi(words[2]));
     } else if (command == "screenshot") {
       app.writeScreenshot(words[1]);
     } else if (command == "save") {

@@ -64,7 +64,7 @@ Window::Window(const std::string& title, glm::ivec2 size) : state_(std::make_uni
       for (const KeyBinding& b : keyBindings()) {
         if (b.key == key) app->release(b.action);
       }
-    } else if (binding != nullptr && (event == GLFW_PRESS || binding->held == Held::no)) {
+    } else if (binding != nullptr && (event == GLFW_PRESS || binding->habit == Habit::repeats)) {
       app->press(binding->action);
     }
   });
@@ -83,6 +83,12 @@ Window::Window(const std::string& title, glm::ivec2 size) : state_(std::make_uni
   });
   glfwSetScrollCallback(state_->window, [](GLFWwindow* w, double, double y) {
     if (State::of(w).app != nullptr) State::of(w).app->wheel(y);
+  });
+  glfwSetWindowRefreshCallback(state_->window, [](GLFWwindow* w) {
+    if (State::of(w).app != nullptr) State::of(w).app->redraw();
+  });
+  glfwSetWindowFocusCallback(state_->window, [](GLFWwindow* w, int focused) {
+    if (State::of(w).app != nullptr && focused == GLFW_FALSE) State::of(w).app->releaseAll();
   });
   glfwSetDropCallback(state_->window, [](GLFWwindow* w, int count, const char** paths) {
     if (State::of(w).app != nullptr && count > 0) State::of(w).app->open(paths[0]);

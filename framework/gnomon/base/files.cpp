@@ -139,6 +139,13 @@ std::string readFile(const fs::path& path) {
   return bytes;
 }
 
+std::optional<FileStamp> fileStamp(const fs::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return {};
+  return FileStamp{std::int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec,
+                   static_cast<std::uint64_t>(info.st_size), info.st_ino};
+}
+
 void replaceFileAtomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   makeFolder(folderOf(path));
   const fs::path temporary = temporaryName(path);

@@ -1,10 +1,12 @@
 // Files: whole reads, atomic writes, synced appends, hashes, and where the installation lies.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +15,18 @@ namespace gnomon {
 
 /// The whole file. Throws Error that names the path and the system's reason.
 std::string readFile(const std::filesystem::path& path);
+
+/// What tells one version of a file from the next: time and size, and the inode where another file took its place.
+struct FileStamp {
+  std::int64_t changedNanoseconds = 0;  ///< of the last write, since 1970
+  std::uint64_t bytes = 0;
+  std::uint64_t inode = 0;
+
+  auto operator<=>(const FileStamp&) const = default;
+};
+
+/// None where there is no regular file (links are followed).
+std::optional<FileStamp> fileStamp(const std::filesystem::path& path);
 
 /// Writes to a temporary name beside `path`, syncs, renames, syncs the folder: a reader sees the old file or the new one.
 /// Creates missing folders. Throws Error.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace gnomon {
@@ -25,6 +26,22 @@ std::string rangeText(const Range& range) {
 std::string eachInRange(const Range& range) {
   const std::string text = rangeText(range);
   return text.empty() ? "" : ", each" + text;
+}
+
+template <class T>
+bool same(const void* a, const void* b) {
+  return *static_cast<const T*>(a) == *static_cast<const T*>(b);
+}
+
+bool sameLists(const Field& field, const void* a, const void* b) {
+  const std::size_t count = field.count(a);
+  if (field.count(b) != count) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const void* first = field.element(a, i);
+    const void* second = field.element(b, i);
+    if (!(field.nested ? equalValues(*field.nested, first, second) : same<std::string>(first, second))) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -53,6 +70,50 @@ std::vector<std::string> FieldTable::names() const {
   std::vector<std::string> names;
   for (const Field& field : fields_) names.push_back(field.name);
   return names;
+}
+
+void copyValue(const Field& field, void* to, const void* from) {
+  field.assign(to, from);
+}
+
+void copyValues(const FieldTable& table, void* to, const void* from) {
+  for (const Field& field : table.fields()) copyValue(field, to, from);
+}
+
+bool equalValue(const Field& field, const void* a, const void* b) {
+  const void* first = field.find(a);
+  const void* second = field.find(b);
+  if (first == nullptr || second == nullptr) return first == second;
+  switch (field.type) {
+    case FieldType::boolean:
+      return same<bool>(first, second);
+    case FieldType::integer:
+    case FieldType::choice:
+      return same<int>(first, second);
+    case FieldType::real32:
+      return same<float>(first, second);
+    case FieldType::real64:
+      return same<double>(first, second);
+    case FieldType::text:
+      return same<std::string>(first, second);
+    case FieldType::size:
+      return same<glm::ivec2>(first, second);
+    case FieldType::vector2:
+      return same<glm::dvec2>(first, second);
+    case FieldType::vector3:
+      return same<glm::dvec3>(first, second);
+    case FieldType::object:
+      return equalValues(*field.nested, first, second);
+    case FieldType::list:
+      return sameLists(field, first, second);
+    case FieldType::custom:
+      break;
+  }
+  return false;
+}
+
+bool equalValues(const FieldTable& table, const void* a, const void* b) {
+  return std::all_of(table.fields().begin(), table.fields().end(), [&](const Field& field) { return equalValue(field, a, b); });
 }
 
 std::string allowedText(const Field& field) {

@@ -68,6 +68,8 @@ struct Field {
   std::function<const void*(const void*)> find;
   /// The value inside an object, created where it is an empty optional.
   std::function<void*(void*)> make;
+  /// Gives the first object's member the second's value.
+  std::function<void(void*, const void*)> assign;
 
   std::shared_ptr<const FieldTable> nested;  ///< of object, and of list (null: a list of text)
   std::shared_ptr<const void> blank;         ///< default-constructed: an object, or an element of a list (for schemas)
@@ -122,6 +124,13 @@ std::string allowedText(const Field& field);
 
 /// The value of the field in `object`, as JSON without the quotes of text ("5", "box", "[1080,2220]"); "none" if it is empty.
 std::string valueText(const Field& field, const void* object);
+
+/// Gives `to` the value that `from` has, of any type; both are objects with the field.
+void copyValue(const Field& field, void* to, const void* from);
+void copyValues(const FieldTable& table, void* to, const void* from);
+/// Whether two objects agree in the field. Two custom values count as different: nothing is known of them.
+bool equalValue(const Field& field, const void* a, const void* b);
+bool equalValues(const FieldTable& table, const void* a, const void* b);
 
 /// One field, or the fields of an inlined struct with their check.
 class Fields {
@@ -234,6 +243,7 @@ Field makeField(std::string name, V T::*member, std::string meaning) {
       return &value;
     }
   };
+  field.assign = [member](void* to, const void* from) { static_cast<T*>(to)->*member = static_cast<const T*>(from)->*member; };
   return field;
 }
 }  // namespace detail
@@ -319,6 +329,9 @@ Fields inlined(V T::*member, const ParameterTable<V>& inner, const std::string& 
     field.name = prefix + field.name;
     field.find = [member, find = field.find](const void* object) { return find(&(static_cast<const T*>(object)->*member)); };
     field.make = [member, make = field.make](void* object) { return make(&(static_cast<T*>(object)->*member)); };
+    field.assign = [member, assign = field.assign](void* to, const void* from) {
+      assign(&(static_cast<T*>(to)->*member), &(static_cast<const T*>(from)->*member));
+    };
   }
   FieldTable::Check check;
   if (inner.check()) {

@@ -23,46 +23,71 @@ ContextInfo currentContextInfo() {
 
 // --- debug messages -----------------------------------------------------------------------------------------------------
 
-struct DebugMessages::State {
+namespace {
+
+struct Gathered {
+  int users = 0;
   std::string errors;
-  void* earlierFunction = nullptr;  // who received before: gets them again afterwards
+  void* earlierFunction = nullptr;  // who received before the first: gets them again after the last
   void* earlierUser = nullptr;
-
-  static void GLAPIENTRY receive(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length,
-                                 const GLchar* text, const void* user) {
-    const std::string message(text, length < 0 ? std::strlen(text) : static_cast<std::size_t>(length));
-    if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
-      // Exceptions must not cross the driver: the message waits for throwIfError.
-      auto& errors = const_cast<State*>(static_cast<const State*>(user))->errors;
-      if (errors.size() < 2000) errors += (errors.empty() ? "" : "; ") + message;
-    } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
-      log::warning("OpenGL: " + message);
-    }
-  }
 };
+thread_local Gathered gathered;
 
-DebugMessages::DebugMessages() : state_(std::make_unique<State>()) {
-  glGetPointerv(GL_DEBUG_CALLBACK_FUNCTION, &state_->earlierFunction);
-  glGetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &state_->earlierUser);
+constexpr std::size_t kMostText = 2000;
+
+void gather(const std::string& message) {
+  if (gathered.errors.size() < kMostText) gathered.errors += (gathered.errors.empty() ? "" : "; ") + message;
+}
+
+/// Exceptions must not cross the driver: the message waits for throwIfError.
+void GLAPIENTRY receive(GLenum /*source*/, GLenum type, GLuint /*id*/, GLenum severity, GLsizei length, const GLchar* text,
+                        const void* /*user*/) {
+  const std::string message(text, length < 0 ? std::strlen(text) : static_cast<std::size_t>(length));
+  if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR) {
+    gather(message);
+  } else if (severity == GL_DEBUG_SEVERITY_HIGH) {
+    log::warning("OpenGL: " + message);
+  }
+}
+
+/// Empties the context's error flags; the first of them, or GL_NO_ERROR.
+GLenum takeErrorFlag() {
+  const GLenum first = glGetError();
+  for (int i = 0; first != GL_NO_ERROR && i < 16 && glGetError() != GL_NO_ERROR; ++i) continue;  // one flag for each unit
+  return first;
+}
+
+}  // namespace
+
+DebugMessages::DebugMessages() {
+  if (gathered.users++ == 0) {
+    gathered.errors.clear();
+    glGetPointerv(GL_DEBUG_CALLBACK_FUNCTION, &gathered.earlierFunction);
+    glGetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &gathered.earlierUser);
+  }
   glEnable(GL_DEBUG_OUTPUT);
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DEBUG_SEVERITY_NOTIFICATION, 0, nullptr, GL_FALSE);
-  glDebugMessageCallback(&State::receive, state_.get());
+  glDebugMessageCallback(&receive, nullptr);
 }
 
 DebugMessages::~DebugMessages() {
-  glDebugMessageCallback(reinterpret_cast<GLDEBUGPROC>(state_->earlierFunction), state_->earlierUser);
+  if (--gathered.users == 0)
+    glDebugMessageCallback(reinterpret_cast<GLDEBUGPROC>(gathered.earlierFunction), gathered.earlierUser);
 }
 
 void DebugMessages::throwIfError(const std::string& where) {
-  if (state_->errors.empty()) return;
-  std::string message = where + ": OpenGL: " + state_->errors;
-  state_->errors.clear();
+  const GLenum flag = takeErrorFlag();
+  if (gathered.errors.empty() && flag != GL_NO_ERROR) gather(fmt::format("error 0x{:04x}", static_cast<unsigned>(flag)));
+  if (gathered.errors.empty()) return;
+  const std::string message = where + ": OpenGL: " + gathered.errors;
+  gathered.errors.clear();
   throw Error(message);
 }
 
 void DebugMessages::discard() {
-  state_->errors.clear();
+  takeErrorFlag();
+  gathered.errors.clear();
 }
 
 // --- EGL ----------------------------------------------------------------------------------------------------------------

@@ -13,7 +13,9 @@ struct ContextInfo {
 };
 ContextInfo currentContextInfo();
 
-/// Receives the debug messages of the context that is current when it is made. Nested ones take turns: the last made receives.
+/// What the driver calls an error, gathered for this thread while any of these lives; they share what was gathered, in any
+/// order of making and ending. The current context's messages come here from when one was made. Drivers whose contexts tell
+/// nothing unless made for debugging are asked by glGetError.
 class DebugMessages {
  public:
   DebugMessages();
@@ -25,10 +27,6 @@ class DebugMessages {
   void throwIfError(const std::string& where);
   /// Forgets them: whoever made them has failed already, and who comes next is not to blame.
   void discard();
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
 };
 
 struct HeadlessOptions {

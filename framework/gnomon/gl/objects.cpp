@@ -3,12 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "gnomon/base/error.h"
 
 namespace gnomon::gl {
 
+namespace {
+std::atomic<int> objects{0};  // contexts of several threads share it
+}
+
+int liveObjects() {
+  return objects;
+}
+
 namespace detail {
+void countObject(int change) {
+  objects += change;
+}
 void deleteTexture(GLuint name) {
   glDeleteTextures(1, &name);
 }

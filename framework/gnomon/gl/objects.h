@@ -10,12 +10,21 @@
 
 namespace gnomon::gl {
 
+namespace detail {
+void countObject(int change);
+}
+
+/// How many objects this process owns now: what leaks shows here.
+int liveObjects();
+
 /// Owns one OpenGL name; `Deleter` frees it.
 template <auto Deleter>
 class Object {
  public:
   Object() = default;
-  explicit Object(GLuint name) : name_(name) {}
+  explicit Object(GLuint name) : name_(name) {
+    if (name_ != 0) detail::countObject(1);
+  }
   Object(Object&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
   Object& operator=(Object&& other) noexcept {
     std::swap(name_, other.name_);
@@ -24,7 +33,9 @@ class Object {
   Object(const Object&) = delete;
   Object& operator=(const Object&) = delete;
   ~Object() {
-    if (name_ != 0) Deleter(name_);
+    if (name_ == 0) return;
+    Deleter(name_);
+    detail::countObject(-1);
   }
   GLuint name() const { return name_; }
   explicit operator bool() const { return name_ != 0; }

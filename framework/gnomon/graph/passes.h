@@ -39,6 +39,8 @@ struct FullscreenPass {
   Format format = Format::r32f;
   std::optional<glm::ivec2> size = {};  ///< the output's size when not given
   std::optional<glm::vec4> clear = {};  ///< what pixels hold that the shader discards
+  /// x, y, width, height of the only pixels that are drawn, asked for at each run; empty: all. The others hold `clear`.
+  std::function<glm::ivec4()> region = {};
 };
 
 /// Scene geometry into colour and depth targets. Depth is reversed: cleared to 0, nearer is greater.

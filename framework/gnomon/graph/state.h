@@ -49,6 +49,14 @@ struct PassNode {
   std::vector<std::uint64_t> seenRevisions;
 };
 
+/// What cpu passes read back of a texture, kept while its revision stays: copying it costs more than many a pass.
+struct ReadBack {
+  std::shared_ptr<TextureResource> texture;
+  std::uint64_t revision = 0;  ///< that was read
+  std::vector<float> floats;   ///< empty if none were read
+  std::vector<std::uint32_t> integers;
+};
+
 inline constexpr int kNoWriter = -1;
 inline constexpr int kImported = -2;  ///< written by another graph
 
@@ -72,12 +80,8 @@ struct Graph::State {
   std::unique_ptr<GraphBuilder> builder;
   std::unique_ptr<UniformWriter> uniforms;
 
-  // Memory that frames use again: what cpu passes read back (spans stay while the deque grows), and what is checked.
-  std::deque<std::vector<float>> floats;
-  std::deque<std::vector<std::uint32_t>> integers;
-  std::size_t floatsUsed = 0;
-  std::size_t integersUsed = 0;
-  std::vector<float> readScratch;
+  std::deque<ReadBack> readBacks;  ///< spans stay while it grows
+  std::vector<float> readScratch;  ///< of what is checked
 };
 
 }  // namespace gnomon

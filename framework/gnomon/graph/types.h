@@ -97,7 +97,7 @@ struct FrameCounters {
 };
 
 /// What a technique claims of its own precision, from which bounds on its error are derived (stability suite, docs).
-/// Filled by the shared passes: the static part at set-up, near and far each time the map is fitted.
+/// Filled by the shared passes: the static part at set-up; near, far and biases each time the map is fitted.
 struct Facts {
   bool readsMap = false;       ///< the rest of the map's figures hold
   bool perspective = true;     ///< texel extents grow with depth

@@ -4,6 +4,8 @@
 #include <glm/mat4x4.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "gnomon/graph/graph.h"
+
 namespace gnomon {
 
 namespace {
@@ -37,6 +39,20 @@ LightViewBlock lightViewBlock(const FrameInputs& frame) {
   return {glm::vec4(glm::vec3(axes.origin - frame.camera.position), static_cast<float>(frame.light.type)),
           glm::vec4(glm::vec3(axes.z), static_cast<float>(cosine)),
           glm::vec4(static_cast<float>(frame.light.intensity), 0, 0, 0)};
+}
+
+}  // namespace
+
+namespace {
+
+std::shared_ptr<Restriction> everywhere(glm::ivec2 size) {
+  auto texture = std::make_shared<TextureResource>();
+  texture->name = "restriction";
+  texture->info = {size, Format::r8};
+  texture->object = gl::makeTexture2D(GL_R8, size, "session/restriction");
+  const float one = 1.0f;
+  glClearTexImage(texture->object.name(), 0, GL_RED, GL_FLOAT, &one);
+  return std::make_shared<Restriction>(Restriction{std::move(texture), glm::ivec4(0, 0, size)});
 }
 
 }  // namespace
@@ -81,7 +97,12 @@ SessionPasses sessionPasses(GraphBuilder& graph, glm::ivec2 size) {
   graph.provide("gIds", g.ids);
   graph.provide("gShadingNormal", passes.shadingNormal);
   graph.provide("gAlbedo", passes.albedo);
-  g.mask = graph.fullscreen("receiver mask", {.shader = "gnomon/receiver_mask.frag", .format = Format::r8});
+  passes.restriction = everywhere(size);
+  graph.provide("gRestriction", graph.import("restriction", passes.restriction->pixels));
+  g.mask = graph.fullscreen("receiver mask", {.shader = "gnomon/receiver_mask.frag",
+                                              .format = Format::r8,
+                                              .clear = glm::vec4(0.0f),
+                                              .region = [r = passes.restriction] { return r->region; }});
   graph.provide("gMask", g.mask);
   return passes;
 }

@@ -1,10 +1,18 @@
 // The passes every session has: camera and light blocks, G-buffer, receiver mask, shading.
 #pragma once
 
+#include <memory>
+
 #include "gnomon/graph/passes.h"
 #include "gnomon/technique/technique.h"
 
 namespace gnomon {
+
+/// Where receivers are looked for; set by hand, everywhere to begin with.
+struct Restriction {
+  std::shared_ptr<TextureResource> pixels;  ///< r8: above 0.5, inside `region`
+  glm::ivec4 region{0};                     ///< x, y, width, height: nothing outside
+};
 
 /// The G-buffer and what only shading reads.
 struct SessionPasses {
@@ -13,6 +21,7 @@ struct SessionPasses {
   Texture albedo;         ///< rgba8, linear
   Buffer view;            ///< block View
   Buffer lightView;       ///< block LightView
+  std::shared_ptr<Restriction> restriction;
 };
 
 /// Declares them and provides gPosition, gNormal, gIds, gMask, gShadingNormal, gAlbedo, View and LightView by name.

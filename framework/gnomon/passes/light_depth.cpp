@@ -130,7 +130,7 @@ Support depthMapSupport(const SceneSurvey& /*survey*/, const Light& light, const
   return Support::ignoring({Effect::penumbra, Effect::varyingPenumbra, Effect::overlappingPenumbrae});
 }
 
-LightDepth lightDepth(GraphBuilder& graph, const Frame& /*frame*/, const DepthMapParameters& parameters, const EffectPlan& plan,
+LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapParameters& parameters, const EffectPlan& plan,
                       double filterRadiusTexels) {
   const FormatPrecision precision = precisionOf(parameters.format);
   const glm::ivec2 mapSize = parameters.size;
@@ -140,11 +140,6 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& /*frame*/, const DepthMa
   facts.depthStep = precision.step;
   facts.floatDepth = precision.relative;
   facts.mapSize = mapSize;
-  facts.biasConstant = parameters.bias.constant;
-  facts.biasSlope = parameters.bias.slope;
-  facts.biasNormal = parameters.bias.normal;
-  facts.biasCurvature = parameters.bias.curvature;
-  facts.biasLimit = parameters.bias.limit;
   facts.receiverPlane = parameters.bias.receiverPlane;
   facts.filterRadiusTexels = filterRadiusTexels;
 
@@ -152,26 +147,33 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& /*frame*/, const DepthMa
   const DrawList casters = graph.drawList("casters");
   const bool cull = plan.has(Rule::culling);
   const bool fit = plan.has(Rule::fitting);
-  // A tap at the filter's border may fall anywhere in its texel, and rasterisation decides at texel centres: one texel more.
-  const glm::dvec2 margin = (filterRadiusTexels + parameters.bias.normal + 1.5) * 2.0 / glm::dvec2(mapSize);
   const auto scratch = std::make_shared<MapFit>();
   graph.cpu("fit",
             {.inputs = {Input::geometry, Input::light, Input::camera},
+             .after = {frame.parameters},
              .buffers = {lightMap},
              .draws = {casters},
-             .run = [=](CpuContext& context) {
-               const FrameInputs& frame = context.frame();
-               const MapSubject subject = mapSubject(frame);
+             .run = [=, &bias = parameters.bias](CpuContext& context) {
+               const FrameInputs& inputs = context.frame();
+               const MapSubject subject = mapSubject(inputs);
                const MapPlane plane = mapPlane(subject);
+               // A tap at the filter's border may fall anywhere in its texel, and rasterisation decides at texel centres: one
+               // texel more.
+               const glm::dvec2 margin = (filterRadiusTexels + bias.normal + 1.5) * 2.0 / glm::dvec2(mapSize);
                fitMap(subject, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = precision.nearRatio}, *scratch);
-               context.writeBlock(lightMap, lightMapBlock(frame, plane, *scratch, mapSize, precision, filterRadiusTexels));
+               context.writeBlock(lightMap, lightMapBlock(inputs, plane, *scratch, mapSize, precision, filterRadiusTexels));
                context.draw(casters, scratch->casters, plane.axes.origin);
                Facts& now = context.facts();
                now.perspective = plane.perspective;
                now.texel = 2.0 * plane.halfExtent / glm::dvec2(mapSize);
                now.nearDepth = scratch->near;
                now.farDepth = scratch->far;
-               now.cameraDistance = glm::length(frame.camera.position - plane.axes.origin);
+               now.cameraDistance = glm::length(inputs.camera.position - plane.axes.origin);
+               now.biasConstant = bias.constant;
+               now.biasSlope = bias.slope;
+               now.biasNormal = bias.normal;
+               now.biasCurvature = bias.curvature;
+               now.biasLimit = bias.limit;
              }});
 
   const Texture map = graph.texture("depth map", {mapSize, precision.format});

@@ -38,7 +38,9 @@ struct LightDepth {
 /// Declares two passes: `fit` on the CPU (the light's matrices, near and far, which casters to draw) and `light depth`.
 /// `filterRadiusTexels` is how far from the receiver's own texel the technique reads (Chebyshev): casters that could only
 /// matter beyond it are culled. Provides the block LightMap to later shaders and fills the graph's facts.
+/// `parameters` must outlive the graph, as a technique's do: `fit` follows the biases while they change.
 LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapParameters& parameters, const EffectPlan& plan,
                       double filterRadiusTexels);
+LightDepth lightDepth(GraphBuilder&, const Frame&, const DepthMapParameters&&, const EffectPlan&, double) = delete;
 
 }  // namespace gnomon

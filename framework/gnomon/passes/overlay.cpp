@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "gnomon/base/error.h"
 #include "gnomon/base/files.h"
@@ -132,6 +133,19 @@ void Overlay::rectangle(glm::vec2 min, glm::vec2 max, glm::vec4 colour) {
   quad(min, max, glm::vec2(-1.0f), glm::vec2(-1.0f), colour);
 }
 
+void Overlay::line(glm::vec2 from, glm::vec2 to, float width, glm::vec4 colour) {
+  const glm::vec2 along = to - from;
+  const float length = glm::length(along);
+  if (!(length > 0.0f)) return;
+  const glm::vec2 side = glm::vec2(-along.y, along.x) * (0.5f * width / length);
+  const glm::vec2 none(-1.0f);
+  const Vertex a{from - side, none, colour};
+  const Vertex b{to - side, none, colour};
+  const Vertex c{from + side, none, colour};
+  const Vertex d{to + side, none, colour};
+  vertices_.insert(vertices_.end(), {a, b, c, c, b, d});
+}
+
 void Overlay::text(glm::vec2 at, std::string_view utf8, glm::vec4 colour) {
   // Whole pixels: letters are rasterised for them.
   glm::vec2 pen(std::round(at.x), std::round(at.y) + font_->ascent);
@@ -159,6 +173,48 @@ float Overlay::textWidth(std::string_view utf8) const {
     widest = std::max(widest, width);
   }
   return widest;
+}
+
+std::string Overlay::wrapped(std::string_view utf8, float pixels) const {
+  const auto room = static_cast<std::size_t>(std::max(1.0f, pixels / font_->advance));
+  std::string out;
+  std::string word;
+  std::size_t column = 0;      // letters on the line, spaces too
+  std::size_t wordLength = 0;  // letters, not bytes
+  const auto breakLine = [&] {
+    while (!out.empty() && out.back() == ' ') out.pop_back();
+    out += '\n';
+    column = 0;
+  };
+  const auto endWord = [&] {
+    if (column > 0 && column + wordLength > room) breakLine();
+    out += word;
+    column += wordLength;
+    word.clear();
+    wordLength = 0;
+  };
+  for (std::size_t i = 0; i < utf8.size();) {
+    const std::size_t start = i;
+    const int code = nextCodePoint(utf8, i);
+    if (code == '\n') {
+      endWord();
+      breakLine();
+    } else if (code == ' ') {
+      endWord();
+      if (column >= room) {
+        breakLine();
+      } else if (column > 0) {
+        out += ' ';
+        ++column;
+      }
+    } else {
+      if (wordLength == room) endWord();
+      word += utf8.substr(start, i - start);
+      ++wordLength;
+    }
+  }
+  endWord();
+  return out;
 }
 
 float Overlay::lineHeight() const {

@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,12 +24,17 @@ class Overlay {
   void setFontPixels(float pixels);
 
   void rectangle(glm::vec2 min, glm::vec2 max, glm::vec4 colour);
+  /// A straight stroke between two points.
+  void line(glm::vec2 from, glm::vec2 to, float width, glm::vec4 colour);
   /// `at` is the top left of the first line; '\n' begins another. Characters outside the font's set are drawn as '?'.
   void text(glm::vec2 at, std::string_view utf8, glm::vec4 colour);
 
   /// Of the longest line, in pixels.
   float textWidth(std::string_view utf8) const;
   float lineHeight() const;
+
+  /// Breaks lines so that none is wider than `pixels`: between words where there are any, else within a word.
+  std::string wrapped(std::string_view utf8, float pixels) const;
 
   /// Draws all that was collected into the bound framebuffer of `size` pixels and forgets it.
   void draw(glm::ivec2 size);

@@ -16,7 +16,9 @@ void Presenter::draw(const PresentView& view, glm::ivec2 size) const {
   const GLuint program = program_.name();
   const auto at = [program](const char* name) { return glGetUniformLocation(program, name); };
   const TextureResource* right = view.right != nullptr ? view.right : view.left;
-  glViewport(0, 0, size.x, size.y);
+  const glm::ivec2 extent = view.extent.x > 0 && view.extent.y > 0 ? view.extent : size;
+  const glm::ivec2 corner(view.at.x, size.y - view.at.y - extent.y);  // windows count from the bottom
+  glViewport(corner.x, corner.y, extent.x, extent.y);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
   glDisable(GL_SCISSOR_TEST);
@@ -29,7 +31,8 @@ void Presenter::draw(const PresentView& view, glm::ivec2 size) const {
   glProgramUniform1f(program, at("divider"), view.right != nullptr ? view.divider : 2.0f);
   glProgramUniform1f(program, at("scale"), view.scale);
   glProgramUniform2f(program, at("range"), view.range.x, view.range.y);
-  glProgramUniform2f(program, at("windowSize"), static_cast<float>(size.x), static_cast<float>(size.y));
+  glProgramUniform2f(program, at("corner"), static_cast<float>(corner.x), static_cast<float>(corner.y));
+  glProgramUniform2f(program, at("extent"), static_cast<float>(extent.x), static_cast<float>(extent.y));
   glBindTextureUnit(0, view.left->object.name());
   glBindTextureUnit(1, right->object.name());
   glBindSampler(0, nearest_.name());

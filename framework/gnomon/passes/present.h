@@ -22,12 +22,16 @@ struct PresentView {
   float scale = 0.5f;
   glm::vec2 range{0.0f, 1.0f};  ///< of values: low, high
   int channel = 0;              ///< of values; -1: the first three as colours
+  /// Where in the window it lies: pixels of the upper left corner, and of the extent. No extent: the whole window.
+  glm::ivec2 at{0, 0};
+  glm::ivec2 extent{0, 0};
 };
 
 class Presenter {
  public:
   Presenter();
-  /// Fills the bound framebuffer of `size` pixels, whose row 0 is the bottom, as windows have it. Textures keep their top.
+  /// Fills its part of the bound framebuffer of `size` pixels, whose row 0 is the bottom, as windows have it. Textures keep
+  /// their top.
   void draw(const PresentView& view, glm::ivec2 size) const;
 
  private:

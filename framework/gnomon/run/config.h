@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "gnomon/base/error.h"
@@ -26,6 +28,9 @@ struct SceneChoice {
   std::filesystem::path file;                    ///< as the program opens it: relative names were joined to the config's folder
   std::optional<std::vector<std::string>> cast;  ///< names of the nodes that cast; nullopt: all
   std::optional<std::vector<std::string>> receive;  ///< names of the nodes that receive; nullopt: all
+  /// By how much the instances of a name are moved: metres along the world's axes, on top of any animation. Each name once.
+  std::vector<std::pair<std::string, glm::dvec3>> moves = {};
+  double time = 0.0;  ///< seconds, at least 0: the pose of a scene in which something moves
 };
 
 /// A registered technique. Whether its parameters are right is for those to say who have its table: they report at `where`.

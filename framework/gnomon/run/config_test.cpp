@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "gnomon/run/scene_choice.h"
+
 namespace gnomon {
 namespace {
 
@@ -149,6 +151,40 @@ TEST(SceneChoice, IsOneOfTwo) {
                             R"({"file": 1})", R"({"file": "x", "casts": []})", R"({"file": "x", "cast": "a"})"}) {
     EXPECT_EQ(faults(std::string(R"({"scene": )") + scene + R"(, "techniques": [{"technique": "a"}]})").size(), 1U) << scene;
   }
+}
+
+TEST(SceneChoice, MoveAndTimeBelongToEveryScene) {
+  for (const char* which : {R"("builtin": "animated")", R"("file": "x.glb")"}) {
+    const RunConfig config = readWell(std::string(R"({"scene": {)") + which +
+                                      R"(, "move": {"a": [1, -2, 0.5], "b/~": [0, 0, 0]}, "time": 1.5},
+                                          "techniques": [{"technique": "a"}]})");
+    ASSERT_EQ(config.scenes[0].moves.size(), 2U) << which;
+    EXPECT_EQ(config.scenes[0].moves[0], std::pair(std::string("a"), glm::dvec3(1.0, -2.0, 0.5))) << which;
+    EXPECT_EQ(config.scenes[0].moves[1].first, "b/~") << which;
+    EXPECT_EQ(config.scenes[0].time, 1.5) << which;
+  }
+}
+
+TEST(SceneChoice, FaultsOfMoveAndTimeTellTheirPlace) {
+  const auto placeOf = [](const std::string& keys) {
+    const auto lines = faults(R"({"scene": {"builtin": "layers", )" + keys + R"(}, "techniques": [{"technique": "a"}]})");
+    return lines.size() == 1 ? lines[0].substr(0, lines[0].find(": ", 14)) : std::to_string(lines.size()) + " faults";
+  };
+  EXPECT_EQ(placeOf(R"("time": -0.1)"), "runs/c.json: /scene/time");
+  EXPECT_EQ(placeOf(R"("move": [1, 2, 3])"), "runs/c.json: /scene/move");
+  EXPECT_EQ(placeOf(R"("move": {"a/b": [1, 2]})"), "runs/c.json: /scene/move/a~1b");
+  EXPECT_EQ(placeOf(R"("move": {"a": [1, 2, 1e10]})"), "runs/c.json: /scene/move/a");
+  EXPECT_EQ(placeOf(R"("move": {"a": [0, 0, 0], "a": [1, 1, 1]})"), "runs/c.json: /scene/move/a");
+}
+
+TEST(SceneChoice, IsWrittenAsItIsRead) {
+  const std::vector<std::string> scenes{
+      R"({"builtin":"half_plane","blocker_height":0.1,"source_size":1.0})",
+      R"({"builtin":"animated","source_size":0.5,"move":{"bob":[0.1,0.0,-3.0],"a/b":[0.0,0.0,1.0]},"time":0.3})",
+      R"({"file":"/x/y.glb","cast":["a"],"receive":[],"move":{"a":[1.0,2.0,3.0]},"time":12.0})", R"({"file":"/x/y.glb"})"};
+  for (const std::string& text : scenes)
+    EXPECT_EQ(writeSceneChoice(readWell(R"({"scene": )" + text + R"(, "techniques": [{"technique": "a"}]})").scenes[0]).dump(),
+              text);
 }
 
 TEST(Sweep, ValuesAreNonEmptyListsOfDifferentValues) {

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/trigonometric.hpp>
@@ -15,7 +14,6 @@
 #include "gnomon/base/clock.h"
 #include "gnomon/base/files.h"
 #include "gnomon/base/statistics.h"
-#include "gnomon/measure/classes.h"
 #include "gnomon/measure/error.h"
 #include "gnomon/run/pictures.h"
 #include "gnomon/run/reference.h"
@@ -36,24 +34,6 @@ std::vector<Light> posesOf(const Light& light, int poses) {
   std::vector<Light> all;
   for (int p = 1; p < poses; ++p) all.push_back(lightAtPose(light, p, poses));
   return all;
-}
-
-/// N.L towards the source's centre, from the G-buffer; 0 outside the mask.
-Image normalLightCosine(const Session& session, const Image& mask, const Image& positions, const Image& normals) {
-  const LightFrame axes = lightFrame(session.light());
-  Image cosine(mask.width, mask.height);
-  for (std::size_t i = 0; i < mask.pixels(); ++i) {
-    if (mask.data[i] < 0.5f) continue;
-    const glm::dvec3 p =
-        session.camera().position + glm::dvec3(positions.data[4 * i], positions.data[4 * i + 1], positions.data[4 * i + 2]);
-    const glm::dvec3 n(normals.data[4 * i], normals.data[4 * i + 1], normals.data[4 * i + 2]);
-    cosine.data[i] = static_cast<float>(glm::dot(n, towardsCentre(session.light(), axes, p)));
-  }
-  return cosine;
-}
-
-Image firstThree(const Image& image) {
-  return colourOf(image);
 }
 
 std::string processorName() {
@@ -94,7 +74,8 @@ struct LightRun::State {
   LightRunOptions options;
   Session session;
   RenderedReference reference;
-  Image mask, positions, normals, classes;
+  ReceiverImages receivers;
+  Image classes;
   MachineRecord machine;
   gl::QueryObject gpuTimer;  ///< only where the GPU's timer is believed
 
@@ -108,14 +89,9 @@ struct LightRun::State {
         reference(renderReference(session, registry, {r.reference, options.referenceCache})),
         machine{gl::currentContextInfo().renderer, processorName()} {
     session.runShared();
-    mask = session.receiverMask();
-    positions = session.positions();
-    normals = session.normals();
-    const Image cosine = normalLightCosine(session, mask, positions, normals);
-    const Image position3 = firstThree(positions);
-    const Image normal3 = firstThree(normals);
+    receivers = receiverImages(session);
+    classes = classesOf(session, receivers, reference.halves);
     if (options.clock == Clock::gpu) gpuTimer = gl::makeQuery(GL_TIME_ELAPSED);
-    classes = classifyPixels({mask, reference.halves.a, reference.halves.b, position3, normal3, cosine});
   }
 
   const Light& nominal() const { return run.lights[light]; }
@@ -215,7 +191,8 @@ struct LightRun::State {
     if (!options.imageDirectory.empty()) {
       const Image shaded = session.shaded(slot);
       writePictures(options.imageDirectory, record.job, run.config.output.images, options.exr,
-                    {shaded, visibility, reference.halves, mask, classes, positions, normals}, session);
+                    {shaded, visibility, reference.halves, receivers.mask, classes, receivers.positions, receivers.normals},
+                    session);
     }
     if (options.clock) {
       const Slot baseline = session.addSlot(run.baseline.technique, run.baseline.parameters);
@@ -253,13 +230,13 @@ JobRecord LightRun::run(const ResolvedTechnique& technique) {
 }
 
 std::string jobKey(const ResolvedRun& run, std::size_t light, const ResolvedTechnique& technique) {
-  const std::string decides =
-      fmt::format("{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {} {} {}", contentHash(run.scene),
-                  writeObject(*lightTable(), &run.lights[light]).dump(), writeObject(*cameraTable(), &run.camera).dump(),
-                  run.config.output.size.x, run.config.output.size.y, technique.name(), technique.parametersJson().dump(),
-                  run.reference.name(), run.reference.parametersJson().dump(), run.baseline.name(),
-                  run.baseline.parametersJson().dump(), writeObject(*planOverridesTable(), &run.config.plan).dump(),
-                  run.config.measure.frames, run.config.measure.blocks, fmt::join(run.config.measure.regimes, " "));
+  const Light bare = withoutName(run.lights[light]);
+  const std::string decides = fmt::format(
+      "{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {} {} {}", contentHash(run.scene), writeObject(*lightTable(), &bare).dump(),
+      writeObject(*cameraTable(), &run.camera).dump(), run.config.output.size.x, run.config.output.size.y, technique.name(),
+      technique.parametersJson().dump(), run.reference.name(), run.reference.parametersJson().dump(), run.baseline.name(),
+      run.baseline.parametersJson().dump(), writeObject(*planOverridesTable(), &run.config.plan).dump(),
+      run.config.measure.frames, run.config.measure.blocks, fmt::join(run.config.measure.regimes, " "));
   return technique.name() + "-" + hashHex(decides).substr(0, 16);
 }
 

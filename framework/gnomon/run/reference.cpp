@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "gnomon/base/files.h"
 #include "gnomon/base/json.h"
+#include "gnomon/measure/classes.h"
+#include "gnomon/run/pictures.h"
 
 namespace gnomon {
 
@@ -28,10 +31,7 @@ std::string shaderText(const std::filesystem::path& directory) {
 }
 
 Image renderHalf(Session& session, const ResolvedTechnique& technique, std::uint64_t& rays) {
-  const Slot slot = session.addSlot(technique.technique, technique.parameters);
-  if (!session.support(slot).ok()) {
-    throw Error(fmt::format("the reference '{}' refuses: {}", technique.name(), session.support(slot).refusal));
-  }
+  const Slot slot = addReferenceSlot(session, technique);
   const FrameReport report = session.frame(slot);
   rays += report.technique.counters.rays;
   Image visibility = session.visibility(slot);
@@ -39,16 +39,51 @@ Image renderHalf(Session& session, const ResolvedTechnique& technique, std::uint
   return visibility;
 }
 
+/// N.L towards the source's centre, from the G-buffer; 0 outside the mask.
+Image normalLightCosine(const Session& session, const ReceiverImages& receivers) {
+  const LightFrame axes = lightFrame(session.light());
+  const std::vector<float>& positions = receivers.positions.data;
+  const std::vector<float>& normals = receivers.normals.data;
+  Image cosine(receivers.mask.width, receivers.mask.height);
+  for (std::size_t i = 0; i < cosine.pixels(); ++i) {
+    if (receivers.mask.data[i] < 0.5f) continue;
+    const glm::dvec3 p = session.camera().position + glm::dvec3(positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]);
+    const glm::dvec3 n(normals[4 * i], normals[4 * i + 1], normals[4 * i + 2]);
+    cosine.data[i] = static_cast<float>(glm::dot(n, towardsCentre(session.light(), axes, p)));
+  }
+  return cosine;
+}
+
 }  // namespace
 
+Slot addReferenceSlot(Session& session, const ResolvedTechnique& technique) {
+  const Slot slot = session.addSlot(technique.technique, technique.parameters);
+  if (!session.support(slot).ok()) {
+    throw Error(fmt::format("the reference '{}' refuses: {}", technique.name(), session.support(slot).refusal));
+  }
+  return slot;
+}
+
+ReceiverImages receiverImages(const Session& session) {
+  return {session.receiverMask(), session.positions(), session.normals()};
+}
+
+Image classesOf(const Session& session, const ReceiverImages& receivers, const ReferencePair& halves) {
+  const Image cosine = normalLightCosine(session, receivers);
+  const Image positions = colourOf(receivers.positions);
+  const Image normals = colourOf(receivers.normals);
+  return classifyPixels({receivers.mask, halves.a, halves.b, positions, normals, cosine});
+}
+
 std::string referenceKey(const Session& session, const ResolvedTechnique& technique) {
+  const Light bare = withoutName(session.light());
   const gl::ContextInfo info = gl::currentContextInfo();
   std::string plan;
   for (const PlanDecision& d : session.plan().decisions) plan += d.on ? '1' : '0';
   return fmt::format(
       "scene {}\nlight {}\ncamera {}\nsize {}x{}\ntechnique {} {}\nlibrary {}\nplan {}\nframework {}\nshaders {}\nrenderer {} "
       "{}\n",
-      contentHash(session.scene()), writeObject(*lightTable(), &session.light()).dump(),
+      contentHash(session.scene()), writeObject(*lightTable(), &bare).dump(),
       writeObject(*cameraTable(), &session.camera()).dump(), session.outputSize().x, session.outputSize().y, technique.name(),
       technique.parametersJson().dump(),
       hashHex(readFile(technique.technique.registered->library) +

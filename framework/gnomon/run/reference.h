@@ -24,6 +24,19 @@ struct RenderedReference {
 /// the plan, the framework's version and shaders, and the renderer that makes the positions.
 std::string referenceKey(const Session& session, const ResolvedTechnique& technique);
 
+/// A slot of the technique. Throws Error when it refuses or fails.
+Slot addReferenceSlot(Session& session, const ResolvedTechnique& technique);
+
+/// What pixels are judged by, as of the session's last runShared.
+struct ReceiverImages {
+  Image mask;       ///< one channel
+  Image positions;  ///< four: relative to the camera
+  Image normals;    ///< four
+};
+ReceiverImages receiverImages(const Session& session);
+/// The codes of classifyPixels under the session's light and camera.
+Image classesOf(const Session& session, const ReceiverImages& receivers, const ReferencePair& halves);
+
 /// Renders `samples` in two halves with different seeds; a plan without penumbra renders once, and B = A.
 RenderedReference renderReference(Session& session, Registry& registry, const ReferenceRequest& request);
 

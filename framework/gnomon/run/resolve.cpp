@@ -14,20 +14,41 @@ namespace {
 /// Of the reference, in two halves, unless the config says otherwise.
 constexpr int kReferenceSamples = 1024;
 
+/// Reports, as InputError, a name that no node with a mesh bears.
+void checkNode(const Scene& scene, const std::string& name, const Location& where) {
+  const std::vector<Instance>& all = scene.instances;
+  if (std::any_of(all.begin(), all.end(), [&](const Instance& instance) { return instance.name == name; })) return;
+  std::vector<std::string> known;
+  for (const Instance& instance : all) known.push_back(instance.name);
+  const std::string nearest = nearestName(name, known);
+  throw InputError({{where.file, where.pointer,
+                     fmt::format("no node of the scene is named '{}'{}", name,
+                                 nearest.empty() ? "" : "; did you mean '" + nearest + "'?")}});
+}
+
 /// Sets a flag of exactly the named nodes' instances; a name that no node bears is a fault.
 void flagNamed(Scene& scene, const std::vector<std::string>& names, bool Instance::*flag, const Location& where) {
-  std::vector<std::string> known;
-  for (Instance& instance : scene.instances) {
+  for (const std::string& name : names) checkNode(scene, name, where);
+  for (Instance& instance : scene.instances)
     instance.*flag = std::find(names.begin(), names.end(), instance.name) != names.end();
-    known.push_back(instance.name);
+}
+
+/// Poses what is animated as it is at `seconds`.
+void poseScene(Scene& scene, double seconds, const Location& where) {
+  if (!(duration(scene) > 0.0)) {
+    throw InputError(
+        {{where.file, where.pointer, fmt::format("found {}; nothing in the scene is animated: leave this key out", seconds)}});
   }
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string nearest = nearestName(name, known);
-    throw InputError({{where.file, where.pointer,
-                       fmt::format("no node of the scene is named '{}'{}", name,
-                                   nearest.empty() ? "" : "; did you mean '" + nearest + "'?")}});
-  }
+  setPose(scene, seconds);
+}
+
+/// Moves the instances of that name, now and in all poses.
+void moveNamed(Scene& scene, const std::string& name, const glm::dvec3& by, const Location& where) {
+  checkNode(scene, name, where);
+  for (Instance& instance : scene.instances)
+    if (instance.name == name) instance.world[3] += glm::dvec4(by, 0.0);
+  for (Animation::Rider& rider : scene.animation.riders)
+    if (scene.instances[rider.instance].name == name) rider.offset += by;
 }
 
 /// Opens a technique and checks its parameters, which stand at `parametersAt` in the entry at `where`; null entry when that
@@ -87,6 +108,8 @@ Scene loadScene(const SceneChoice& choice, const Location& where) {
   }
   if (choice.cast) flagNamed(scene, *choice.cast, &Instance::casts, where.child("cast"));
   if (choice.receive) flagNamed(scene, *choice.receive, &Instance::receives, where.child("receive"));
+  if (choice.time != 0.0) poseScene(scene, choice.time, where.child("time"));
+  for (const auto& [name, by] : choice.moves) moveNamed(scene, name, by, where.child("move").child(name));
   return scene;
 }
 

@@ -40,7 +40,8 @@ struct ResolvedRun {
   std::vector<ResolvedJob> jobs;
 };
 
-/// The scene that the config chose at `where`, with its flags of who casts and receives. Throws InputError.
+/// The scene that the config chose at `where`: with its flags of who casts and receives, posed at its time, its moves applied
+/// (also to what poseAt gives). Throws InputError.
 Scene loadScene(const SceneChoice& choice, const Location& where);
 
 /// Reads and resolves: one run for each of the config's scenes. Every fault goes to `problems`, each once; then the result is

@@ -7,21 +7,81 @@
 namespace gnomon {
 namespace {
 
+using Moves = std::vector<std::pair<std::string, glm::dvec3>>;
+
+/// Beyond, a double no longer tells apart what lies a micrometre apart.
+constexpr double kFarthestMove = 1e9;
+
+struct Move {
+  glm::dvec3 by{0.0};
+};
+
+Field moveField() {
+  return vector("by", &Move::by, {-kFarthestMove, kFarthestMove, "m"}, "along the world's axes");
+}
+
+std::shared_ptr<const CustomField> movesField() {
+  auto field = std::make_shared<CustomField>();
+  field->read = [](const Json& json, void* value, const Location& where, Problems& problems) {
+    auto& moves = *static_cast<Moves*>(value);
+    moves.clear();
+    if (!json.is_object())
+      return reportWrong(json, "an object with [x, y, z] in metres under each node's name", where, problems);
+    for (const auto& [name, by] : json.items()) {
+      Move move;
+      readValue(by, moveField(), &move, where.child(name), problems);
+      moves.emplace_back(name, move.by);
+    }
+  };
+  field->write = [](const void* value) {
+    Json json = Json::object();
+    for (const auto& [name, by] : *static_cast<const Moves*>(value)) {
+      const Move move{by};
+      json[name] = toJson(moveField(), &move);
+    }
+    return json;
+  };
+  field->schema = [] {
+    const Move blank;
+    Json by = objectSchema(FieldTable({moveField()}), &blank)["properties"]["by"];
+    by.erase("default");
+    return Json{{"type", "object"}, {"additionalProperties", std::move(by)}};
+  };
+  return field;
+}
+
+/// The keys that every scene has.
+template <class T>
+Fields poseFields() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return Fields({custom("move", &T::moves, movesField(), "by how many metres along the world's axes to move nodes, by name"),
+                 real("time", &T::time, {0.0, infinity, "s"}, Binding::uniform, "the pose of what is animated in the scene")});
+}
+
 /// The form with a file, before paths are joined.
 struct FileChoice {
   std::string file;
   std::optional<std::vector<std::string>> cast, receive;
+  Moves moves;
+  double time = 0.0;
 };
 
 std::shared_ptr<const FieldTable> fileTable() {
   return ParameterTable<FileChoice>{
       text("file", &FileChoice::file, "a .gltf or .glb file, relative to the config").mandatory(),
       list("cast", &FileChoice::cast, nullptr, "names of the nodes that cast; without it, all do"),
-      list("receive", &FileChoice::receive, nullptr, "names of the nodes that receive; without it, all do")}
+      list("receive", &FileChoice::receive, nullptr, "names of the nodes that receive; without it, all do"),
+      poseFields<FileChoice>()}
       .checked([](const FileChoice& choice, const Location& where, Problems& problems) {
         if (choice.file.empty()) reportWrong(choice.file, "the path of a .gltf or .glb file", where.child("file"), problems);
       })
       .table();
+}
+
+/// A built-in scene's own keys, and those that every scene has.
+std::shared_ptr<const FieldTable> builtinTable(const BuiltinScene& scene) {
+  const ParameterTable<BuiltinParameters> own{Fields(scene.table->fields(), scene.table->check())};
+  return ParameterTable<SceneChoice>{inlined(&SceneChoice::parameters, own), poseFields<SceneChoice>()}.table();
 }
 
 std::vector<std::string> builtinNames() {
@@ -42,7 +102,7 @@ void readBuiltin(const Json& json, SceneChoice& choice, const Location& where, P
   choice.parameters = scene->defaults;
   Json keys = json;
   keys.erase("builtin");
-  readObject(keys, *scene->table, &choice.parameters, where, problems);
+  readObject(keys, *builtinTable(*scene), &choice, where, problems);
 }
 
 void readScene(const Json& json, SceneChoice& choice, const Location& where, Problems& problems) {
@@ -55,23 +115,17 @@ void readScene(const Json& json, SceneChoice& choice, const Location& where, Pro
   choice.file = read.file;
   choice.cast = read.cast;
   choice.receive = read.receive;
-}
-
-Json writeScene(const SceneChoice& choice) {
-  if (choice.builtin.empty()) {
-    const FileChoice file{choice.file.string(), choice.cast, choice.receive};
-    return writeObject(*fileTable(), &file);
-  }
-  Json json = {{"builtin", choice.builtin}};
-  if (const BuiltinScene* scene = findBuiltinScene(choice.builtin)) json.update(writeObject(*scene->table, &choice.parameters));
-  return json;
+  choice.moves = read.moves;
+  choice.time = read.time;
 }
 
 /// One schema a scene, chosen by the name, so that editors complain about the key that is wrong and not about the whole.
 Json sceneSchema() {
   Json branches = Json::array();
   for (const BuiltinScene& scene : builtinScenes()) {
-    Json keys = objectSchema(*scene.table, &scene.defaults);
+    SceneChoice defaults;
+    defaults.parameters = scene.defaults;
+    Json keys = objectSchema(*builtinTable(scene), &defaults);
     keys["properties"]["builtin"] = {{"const", scene.name}, {"description", scene.purpose}};
     branches.push_back({{"if", {{"properties", {{"builtin", {{"const", scene.name}}}}}}}, {"then", std::move(keys)}});
   }
@@ -86,6 +140,20 @@ Json sceneSchema() {
 
 }  // namespace
 
+Json writeSceneChoice(const SceneChoice& choice) {
+  Json json;
+  if (choice.builtin.empty()) {
+    const FileChoice file{choice.file.string(), choice.cast, choice.receive, choice.moves, choice.time};
+    json = writeObject(*fileTable(), &file);
+  } else {
+    json["builtin"] = choice.builtin;
+    if (const BuiltinScene* scene = findBuiltinScene(choice.builtin)) json.update(writeObject(*builtinTable(*scene), &choice));
+  }
+  if (choice.moves.empty()) json.erase("move");
+  if (choice.time == 0.0) json.erase("time");
+  return json;
+}
+
 std::shared_ptr<const CustomField> sceneChoiceField() {
   auto field = std::make_shared<CustomField>();
   field->read = [](const Json& json, void* value, const Location& where, Problems& problems) {
@@ -97,9 +165,9 @@ std::shared_ptr<const CustomField> sceneChoiceField() {
   };
   field->write = [](const void* value) {
     const auto& choices = *static_cast<const std::vector<SceneChoice>*>(value);
-    if (choices.size() == 1) return writeScene(choices[0]);
+    if (choices.size() == 1) return writeSceneChoice(choices[0]);
     Json json = Json::array();
-    for (const SceneChoice& choice : choices) json.push_back(writeScene(choice));
+    for (const SceneChoice& choice : choices) json.push_back(writeSceneChoice(choice));
     return json;
   };
   field->schema = [] {

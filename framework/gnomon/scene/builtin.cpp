@@ -1,7 +1,9 @@
 #include "gnomon/scene/builtin.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/ext/matrix_transform.hpp>
+#include <glm/trigonometric.hpp>
 #include <limits>
 
 #include "gnomon/scene/builtin_dimensions.h"
@@ -169,6 +171,116 @@ Scene layers(const BuiltinParameters& p) {
   return scene;
 }
 
+/// A rotor, a walker and a pendulum: what turns about itself, what travels, and a chain of two joints.
+class AnimatedScene {
+ public:
+  explicit AnimatedScene(const BuiltinParameters& p) : scene_(floorScene("animated", 4.0)) {
+    box_ = addMesh(scene_, boxMesh(glm::dvec3(0.5)));
+    ball_ = addMesh(scene_, sphereMesh(0.28, 24, 16));
+    rotorMaterial_ = addMaterial(scene_, "rotor", kBlockerAlbedo, false);
+    moverMaterial_ = addMaterial(scene_, "mover", kOtherAlbedo, false);
+    addRotor({-1.3, 1.4, -0.6});
+    addWalker({0.9, 0.0, 1.1});
+    addPendulum({1.6, 2.8, -1.4});
+    scene_.lights = {squareSpot({-3.0, 9.0, 4.0}, {0.2, 0.0, 0.0}, 45.0, p.sourceSize)};
+    scene_.camera = cameraAt({2.2, 5.0, 7.4}, {0.1, 0.6, 0.0});
+    setPose(scene_, 0.0);
+  }
+
+  Scene take() { return std::move(scene_); }
+
+ private:
+  static constexpr double kPeriod = 4.0;  // seconds
+  static constexpr int kQuarters = 4;     // keys at each of them, the last as the first: all motions close
+
+  template <class ValueAt>
+  static AnimationChannel keyed(AnimatedProperty property, Interpolation interpolation, const ValueAt& valueAt) {
+    AnimationChannel channel{property, interpolation, kPeriod, {}, {}};
+    for (int i = 0; i <= kQuarters; ++i) {
+      channel.times.push_back(kPeriod * i / kQuarters);
+      valueAt(i % kQuarters, channel.values);
+    }
+    return channel;
+  }
+
+  static glm::dvec4 turned(const glm::dvec3& axis, double degrees) {
+    const double half = glm::radians(degrees) / 2.0;
+    return {std::sin(half) * axis, std::cos(half)};
+  }
+
+  std::uint32_t addNode(int parent, const glm::dmat4& before, std::vector<AnimationChannel> channels) {
+    scene_.animation.nodes.push_back({parent, before, {}, std::move(channels)});
+    return static_cast<std::uint32_t>(scene_.animation.nodes.size() - 1);
+  }
+
+  /// A part of a moving node: a mesh of this size, centred here in the node's space.
+  void addPart(const std::string& name, std::uint32_t node, std::uint32_t mesh, std::uint32_t material,
+               const glm::dvec3& centre, const glm::dvec3& size) {
+    const std::uint32_t place = addNode(static_cast<int>(node), glm::scale(movedTo(centre), size), {});
+    scene_.animation.riders.push_back({static_cast<std::uint32_t>(scene_.instances.size()), place});
+    scene_.instances.push_back({name, mesh, material, glm::dmat4(1.0), true, true});
+  }
+
+  /// A cross that turns once about the vertical, on a mast that stands still.
+  void addRotor(const glm::dvec3& hub) {
+    const glm::dvec3 mast{0.12, hub.y, 0.12};
+    scene_.instances.push_back(
+        {"mast", box_, rotorMaterial_, glm::scale(movedTo(hub - glm::dvec3(0.0, hub.y / 2.0, 0.0)), mast), true, true});
+    const auto quarterTurn = [](int i, std::vector<glm::dvec4>& values) {
+      values.push_back(turned({0.0, 1.0, 0.0}, 360.0 / kQuarters * i));
+    };
+    const std::uint32_t node =
+        addNode(-1, movedTo(hub), {keyed(AnimatedProperty::rotation, Interpolation::linear, quarterTurn)});
+    addPart("rotor_x", node, box_, rotorMaterial_, {0.0, 0.1, 0.0}, {2.4, 0.1, 0.3});
+    addPart("rotor_z", node, box_, rotorMaterial_, {0.0, 0.1, 0.0}, {0.3, 0.1, 2.4});
+  }
+
+  /// A box that walks round a centre, facing where it goes.
+  void addWalker(const glm::dvec3& centre) {
+    constexpr double radius = 1.2;
+    const auto onCircle = [](int i, std::vector<glm::dvec4>& values) {
+      const double angle = glm::radians(360.0) * i / kQuarters;
+      const glm::dvec4 radial{std::cos(angle), 0.0, -std::sin(angle), 0.0};
+      const glm::dvec4 along{-std::sin(angle), 0.0, -std::cos(angle), 0.0};
+      const glm::dvec4 velocity = glm::radians(360.0) / kPeriod * radius * along;
+      values.insert(values.end(), {velocity, radius * radial, velocity});
+    };
+    const auto heading = [](int i, std::vector<glm::dvec4>& values) {
+      values.push_back(turned({0.0, 1.0, 0.0}, 360.0 / kQuarters * i));
+    };
+    const std::uint32_t node = addNode(-1, movedTo(centre),
+                                       {keyed(AnimatedProperty::translation, Interpolation::cubicSpline, onCircle),
+                                        keyed(AnimatedProperty::rotation, Interpolation::linear, heading)});
+    addPart("walker", node, box_, moverMaterial_, {0.0, 0.45, 0.0}, {0.35, 0.9, 0.6});
+  }
+
+  /// Two joints that swing against each other, coming to rest at each side.
+  void addPendulum(const glm::dvec3& pivot) {
+    constexpr double length = 1.1;
+    const auto swing = [](double degrees) {
+      return [degrees](int i, std::vector<glm::dvec4>& values) {
+        const glm::dvec4 still(0.0);
+        values.insert(values.end(), {still, turned({0.0, 0.0, 1.0}, i % 2 == 0 ? degrees : -degrees), still});
+      };
+    };
+    const std::uint32_t upper =
+        addNode(-1, movedTo(pivot), {keyed(AnimatedProperty::rotation, Interpolation::cubicSpline, swing(35.0))});
+    const std::uint32_t lower = addNode(static_cast<int>(upper), movedTo({0.0, -length, 0.0}),
+                                        {keyed(AnimatedProperty::rotation, Interpolation::cubicSpline, swing(-20.0))});
+    addPart("upper_rod", upper, box_, moverMaterial_, {0.0, -length / 2.0, 0.0}, {0.09, length, 0.09});
+    addPart("lower_rod", lower, box_, moverMaterial_, {0.0, -length / 2.0, 0.0}, {0.09, length, 0.09});
+    addPart("bob", lower, ball_, moverMaterial_, {0.0, -length, 0.0}, glm::dvec3(1.0));
+  }
+
+  Scene scene_;
+  std::uint32_t box_ = 0, ball_ = 0;
+  std::uint32_t rotorMaterial_ = 0, moverMaterial_ = 0;
+};
+
+Scene animated(const BuiltinParameters& p) {
+  return AnimatedScene(p).take();
+}
+
 enum class Key { count, blockerHeight, sourceSize };
 
 BuiltinScene entry(std::string name, std::string purpose, std::initializer_list<Key> keys, BuiltinParameters defaults,
@@ -206,6 +318,8 @@ const std::vector<BuiltinScene>& builtinScenes() {
             {Key::count, Key::sourceSize}, {}, pillars),
       entry("layers", "Two quads one above the other: their shadows overlap, where variance shadow maps leak light.",
             {Key::sourceSize}, {}, layers),
+      entry("animated", "A rotor, a walker and a pendulum in a loop of 4 s: shadows whose casters turn, travel and swing.",
+            {Key::sourceSize}, {}, animated),
   };
   return scenes;
 }

@@ -78,10 +78,11 @@ TEST(SphereMesh, PolesLieOnY) {
   EXPECT_EQ(mesh.positions.back(), glm::vec3(0.0f, -2.0f, 0.0f));
 }
 
-TEST(BuiltinScenes, AreTheSix) {
+TEST(BuiltinScenes, AreThese) {
   std::vector<std::string> names;
   for (const BuiltinScene& scene : builtinScenes()) names.push_back(scene.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"half_plane", "strips", "square", "sphere_grid", "pillars", "layers"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"half_plane", "strips", "square", "sphere_grid", "pillars", "layers", "animated"}));
   EXPECT_EQ(findBuiltinScene("square")->name, "square");
   EXPECT_EQ(findBuiltinScene("sqare"), nullptr);
 }

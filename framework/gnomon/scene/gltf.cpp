@@ -13,6 +13,7 @@
 #include <set>
 
 #include "gnomon/base/error.h"
+#include "gnomon/scene/gltf_animation.h"
 #include "gnomon/scene/gltf_file.h"
 
 namespace gnomon {
@@ -25,7 +26,6 @@ using gltf::RawTriangles;
 // A small file may name the same data many times over; beyond these it is an attack or a mistake.
 constexpr std::size_t kMaxIndices = std::size_t{3} << 26;
 constexpr std::size_t kMaxInstances = std::size_t{1} << 20;
-constexpr double kMaxTransform = 1e100;  // times any float, and squared, this is still finite
 const std::set<std::string> kSupportedExtensions = {"KHR_lights_punctual"};
 
 bool finite(const glm::vec3& v) {
@@ -88,7 +88,8 @@ Mesh cleanMesh(const RawTriangles& raw, std::size_t& droppedTriangles) {
 
 class Importer {
  public:
-  explicit Importer(const std::filesystem::path& path) : file_(gltf::openFile(path)), model_(file_.model) {
+  explicit Importer(const std::filesystem::path& path)
+      : file_(gltf::openFile(path)), model_(file_.model), animations_(gltf::readAnimations(file_)) {
     scene_.name = path.stem().string();
   }
 
@@ -96,7 +97,11 @@ class Importer {
     warnUnsupported();
     for (const tinygltf::Material& material : model_.materials) importMaterial(material);
     importNodes();
-    if (!scene_.camera) frameScene();
+    if (scene_.animation.riders.empty()) scene_.animation = {};  // nodes that move, and nothing on them
+    if (scene_.cameras.empty())
+      frameScene();
+    else
+      scene_.camera = scene_.cameras.front().camera;
     if (droppedTriangles_ > 0)
       warn(fmt::format("{} triangles with a vertex that is not finite were dropped", droppedTriangles_));
     return std::move(scene_);
@@ -113,7 +118,7 @@ class Importer {
     for (const std::string& extension : model_.extensionsRequired)
       if (!kSupportedExtensions.contains(extension)) warn("the required extension " + extension + " is not supported");
     if (!model_.skins.empty()) warn("skins are not supported: meshes stay in their bind pose");
-    if (!model_.animations.empty()) warn("animations are not supported: the file's own pose is shown");
+    for (const std::string& line : animations_.warnings) warn(line);
     if (!model_.textures.empty()) warn("textures are not supported: materials have their base colour factor");
   }
 
@@ -153,20 +158,26 @@ class Importer {
     return model_.scenes[static_cast<std::size_t>(index)].nodes;
   }
 
+  /// Where a node is at time 0, and what moves it.
+  struct Place {
+    glm::dmat4 world{1.0};
+    int moving = -1;  // of Animation::nodes: its own, or none
+  };
+
   /// Walks the default scene's trees with a stack of its own. A node that is met twice has two parents or is its own
   /// ancestor; glTF allows neither, so that the walk ends.
   void importNodes() {
     struct Visit {
       int node;
-      glm::dmat4 parent;
+      Place parent;
       std::string pointer;  // of the entry that names the node
     };
     std::vector<Visit> open;
     std::vector<bool> seen(model_.nodes.size(), false);
-    const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& parent, const std::string& pointer) {
+    const auto push = [&](const std::vector<int>& nodes, const Place& parent, const std::string& pointer) {
       for (std::size_t i = nodes.size(); i-- > 0;) open.push_back({nodes[i], parent, pointer + "/" + std::to_string(i)});
     };
-    push(rootNodes(), glm::dmat4(1.0), pointerTo("scenes", std::max(model_.defaultScene, 0)) + "/nodes");
+    push(rootNodes(), Place{}, pointerTo("scenes", std::max(model_.defaultScene, 0)) + "/nodes");
     while (!open.empty()) {
       const Visit visit = std::move(open.back());
       open.pop_back();
@@ -178,41 +189,55 @@ class Importer {
       seen[index] = true;
       const tinygltf::Node& node = model_.nodes[index];
       const std::string where = pointerTo("nodes", visit.node);
-      const glm::dmat4 world = visit.parent * localTransform(node, where);
-      for (int i = 0; i < 16; ++i)
-        if (!(std::abs(world[i / 4][i % 4]) <= kMaxTransform))
-          file_.fail(where, "has a transform that is not finite, or beyond 1e100");
-      importNode(node, world, where);
-      push(node.children, world, where + "/children");
+      const Place place = placeOf(visit.node, visit.parent, where);
+      importNode(node, place, where);
+      push(node.children, place, where + "/children");
     }
   }
 
-  glm::dmat4 localTransform(const tinygltf::Node& node, const std::string& where) const {
+  /// Below a parent; joins the animation where the node or one above it is animated.
+  Place placeOf(int index, const Place& parent, const std::string& where) {
+    Animation::Node node;
+    node.parent = parent.moving;
+    const std::optional<glm::dmat4> matrix = ownTransform(model_.nodes[static_cast<std::size_t>(index)], where, node.rest);
+    if (const auto found = animations_.channels.find(index); found != animations_.channels.end())
+      node.channels = std::move(found->second);
+    Place place{parent.world * matrix.value_or(matrixOf(posed(node.rest, node.channels, 0.0)))};
+    if (!isUsableTransform(place.world)) file_.fail(where, "has a transform that is not finite, or beyond 1e100");
+    if (parent.moving < 0 && node.channels.empty()) return place;
+    if (parent.moving < 0) node.before = parent.world;
+    if (matrix) node.before = node.before * *matrix;
+    place.moving = static_cast<int>(scene_.animation.nodes.size());
+    scene_.animation.nodes.push_back(std::move(node));
+    return place;
+  }
+
+  /// A node's own transform: its matrix, or else what is written to `transform`.
+  std::optional<glm::dmat4> ownTransform(const tinygltf::Node& node, const std::string& where, NodeTransform& transform) const {
     const auto check = [&](const std::vector<double>& values, std::size_t size, const char* key) {
       if (!values.empty() && values.size() != size)
         file_.fail(where + "/" + key, fmt::format("has {} numbers; {} are needed", values.size(), size));
       return !values.empty();
     };
-    glm::dmat4 local(1.0);
     if (check(node.matrix, 16, "matrix")) {
-      for (int i = 0; i < 16; ++i) local[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-      if (local[0][3] != 0.0 || local[1][3] != 0.0 || local[2][3] != 0.0 || local[3][3] != 1.0)
+      glm::dmat4 matrix;
+      for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+      if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0)
         file_.fail(where + "/matrix", "has a last row other than 0 0 0 1");
-      return local;
+      return matrix;
     }
     if (check(node.rotation, 4, "rotation")) {
       const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
       if (!(glm::length(q) > 0.0)) file_.fail(where + "/rotation", "has no length; a unit quaternion is needed");
-      local = glm::mat4_cast(glm::normalize(q));
+      transform.rotation = glm::normalize(q);
     }
-    if (check(node.scale, 3, "scale"))
-      for (int i = 0; i < 3; ++i) local[i] *= node.scale[static_cast<std::size_t>(i)];
+    if (check(node.scale, 3, "scale")) transform.scale = {node.scale[0], node.scale[1], node.scale[2]};
     if (check(node.translation, 3, "translation"))
-      local[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1.0);
-    return local;
+      transform.translation = {node.translation[0], node.translation[1], node.translation[2]};
+    return std::nullopt;
   }
 
-  void importNode(const tinygltf::Node& node, const glm::dmat4& world, const std::string& where) {
+  void importNode(const tinygltf::Node& node, const Place& place, const std::string& where) {
     if (node.mesh >= 0) {
       if (static_cast<std::size_t>(node.mesh) >= model_.meshes.size())
         file_.fail(where + "/mesh", fmt::format("is {}; the file has {}", node.mesh, model_.meshes.size()));
@@ -220,12 +245,18 @@ class Importer {
       for (const auto& [mesh, material] : primitives(node.mesh)) {
         if (scene_.instances.size() == kMaxInstances)
           file_.fail(where, fmt::format("makes more than {} instances", kMaxInstances));
-        scene_.instances.push_back({name, mesh, material, world, true, true});
+        if (place.moving >= 0)
+          scene_.animation.riders.push_back(
+              {static_cast<std::uint32_t>(scene_.instances.size()), static_cast<std::uint32_t>(place.moving)});
+        scene_.instances.push_back({name, mesh, material, place.world, true, true});
       }
     }
-    if (node.camera >= 0) importCamera(node.camera, world, where);
+    const std::size_t camerasAndLights = scene_.cameras.size() + scene_.lights.size();
+    if (node.camera >= 0) importCamera(node, place.world, where);
     if (const auto found = node.extensions.find("KHR_lights_punctual"); found != node.extensions.end())
-      importLight(found->second, world, where + "/extensions/KHR_lights_punctual/light");
+      importLight(node, found->second, place.world, where + "/extensions/KHR_lights_punctual/light");
+    if (place.moving >= 0 && scene_.cameras.size() + scene_.lights.size() > camerasAndLights)
+      warn("cameras and lights on animated nodes are not animated: they stay where they are at time 0");
   }
 
   struct Primitive {
@@ -279,20 +310,20 @@ class Importer {
 
   /// Position, target one metre ahead and up of a node that looks along its -Z.
   template <class T>
-  static void place(T& thing, const glm::dmat4& world) {
+  static void lookAlong(T& thing, const glm::dmat4& world) {
     thing.position = glm::dvec3(world[3]);
     const double length = glm::length(glm::dvec3(world[2]));
     thing.target = thing.position - (length > 0.0 ? glm::dvec3(world[2]) / length : glm::dvec3(0.0, 0.0, 1.0));
     thing.up = glm::dvec3(world[1]);
   }
 
-  void importCamera(int index, const glm::dmat4& world, const std::string& where) {
+  void importCamera(const tinygltf::Node& node, const glm::dmat4& world, const std::string& where) {
+    const int index = node.camera;
     if (static_cast<std::size_t>(index) >= model_.cameras.size())
       file_.fail(where + "/camera", fmt::format("is {}; the file has {}", index, model_.cameras.size()));
-    if (scene_.camera) return warn("the file has several cameras: the first is taken");
     const tinygltf::Camera& from = model_.cameras[static_cast<std::size_t>(index)];
     Camera camera;
-    place(camera, world);
+    lookAlong(camera, world);
     if (from.type == "orthographic") {
       camera.type = CameraType::orthographic;
       camera.height = 2.0 * from.orthographic.ymag;
@@ -306,16 +337,20 @@ class Importer {
     if (!(camera.near > 0.0)) file_.fail(pointer, "has a znear that is not above 0");
     if (!(camera.verticalFovDegrees > 0.0 && camera.verticalFovDegrees < 180.0))
       file_.fail(pointer, "has a yfov that is not between 0 and pi");
-    scene_.camera = camera;
+    std::string name = node.name.empty() ? from.name : node.name;
+    if (name.empty()) name = "camera_" + std::to_string(scene_.cameras.size());
+    scene_.cameras.push_back({std::move(name), camera});
   }
 
-  void importLight(const tinygltf::Value& extension, const glm::dmat4& world, const std::string& pointer) {
+  void importLight(const tinygltf::Node& node, const tinygltf::Value& extension, const glm::dmat4& world,
+                   const std::string& pointer) {
     const int index = extension.Has("light") && extension.Get("light").IsInt() ? extension.Get("light").GetNumberAsInt() : -1;
     if (index < 0 || static_cast<std::size_t>(index) >= model_.lights.size())
       file_.fail(pointer, fmt::format("names light {}; the file has {}", index, model_.lights.size()));
     const tinygltf::Light& from = model_.lights[static_cast<std::size_t>(index)];
     Light light;
-    place(light, world);
+    light.name = node.name.empty() ? from.name : node.name;
+    lookAlong(light, world);
     const std::string where = "/extensions/KHR_lights_punctual" + pointerTo("lights", index);
     if (from.type == "directional") {
       light.type = LightType::directional;
@@ -350,6 +385,7 @@ class Importer {
 
   const File file_;
   const tinygltf::Model& model_;
+  gltf::NodeAnimations animations_;  // of the nodes that were not met yet
   Scene scene_;
   std::map<int, std::vector<Primitive>> primitives_;  // by mesh
   std::set<std::string> warned_;

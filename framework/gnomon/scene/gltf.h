@@ -12,8 +12,11 @@ namespace gnomon {
 /// a node becomes one instance that bears the node's name ("node_7" where it has none). What is not supported is dropped and
 /// named in Scene::warnings, one line for each kind. Triangles with a non-finite vertex are dropped and counted there.
 /// Lights come from KHR_lights_punctual, without extent, colour, falloff or range. Without a camera in the file,
-/// Scene::camera is one that frames the whole scene. Only files in the glTF's own folder and below are read; no image is.
-/// Throws InputError (file, JSON pointer where there is one) on a file that is not valid glTF; never crashes on one.
+/// Scene::camera is one that frames the whole scene. Cameras and lights bear their node's name, else their own. All animations
+/// of nodes play together, each repeating at its own length; of those that move the same thing only the first plays. Skins and
+/// morph targets are not animated, and neither are cameras and lights. Only files in the glTF's own folder and below are read;
+/// no image is. Throws InputError (file, JSON pointer where there is one) on a file that is not valid glTF; never crashes on
+/// one.
 Scene loadGltf(const std::filesystem::path& path);
 
 }  // namespace gnomon

@@ -190,6 +190,34 @@ std::vector<std::uint32_t> readIndices(const File& file, int index, const std::s
   return indices;
 }
 
+bool isSmallInteger(int componentType) {
+  return componentType == TINYGLTF_COMPONENT_TYPE_BYTE || componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+         componentType == TINYGLTF_COMPONENT_TYPE_SHORT || componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+}
+
+template <class T>
+T componentAt(const unsigned char* element, std::size_t component) {
+  T value{};
+  std::memcpy(&value, element + component * sizeof(T), sizeof(T));
+  return value;
+}
+
+/// A float, or a small integer that stands for -1 to 1 or 0 to 1 (glTF 2.0, 3.11).
+double numberAt(const unsigned char* element, std::size_t component, int componentType) {
+  switch (componentType) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return std::max(componentAt<std::int8_t>(element, component) / 127.0, -1.0);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return componentAt<std::uint8_t>(element, component) / 255.0;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return std::max(componentAt<std::int16_t>(element, component) / 32767.0, -1.0);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return componentAt<std::uint16_t>(element, component) / 65535.0;
+    default:
+      return static_cast<double>(componentAt<float>(element, component));
+  }
+}
+
 }  // namespace
 
 void File::fail(const std::string& pointer, const std::string& message) const {
@@ -241,6 +269,30 @@ std::string unsupportedData(const File& file, int index) {
   if (accessor.sparse.isSparse) return "sparse accessors";
   if (accessor.bufferView < 0) return "accessors without a bufferView";
   return {};
+}
+
+std::vector<double> readNumbers(const File& file, int index, const std::string& pointer, NumberKind kind) {
+  struct Form {
+    int type;
+    std::size_t components;
+    const char* allowed;
+  };
+  constexpr Form forms[] = {{TINYGLTF_TYPE_SCALAR, 1, "times; SCALAR of FLOAT (5126) is needed"},
+                            {TINYGLTF_TYPE_VEC3, 3, "translations or scales; VEC3 of FLOAT (5126) is needed"},
+                            {TINYGLTF_TYPE_VEC4, 4, "rotations; VEC4 of FLOAT (5126) or of normalised integers is needed"}};
+  const Form& form = forms[static_cast<std::size_t>(kind)];
+  const tinygltf::Accessor& accessor = accessorAt(file, index, pointer);
+  const bool asFloat = accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
+  const bool asInteger = kind == NumberKind::quaternion && accessor.normalized && isSmallInteger(accessor.componentType);
+  if (accessor.type != form.type || !(asFloat || asInteger))
+    file.fail(pointerTo("accessors", index), std::string("holds ") + form.allowed);
+  const Elements elements = elementsOf(file, index, pointer);
+  std::vector<double> numbers;
+  numbers.reserve(elements.count * form.components);
+  for (std::size_t i = 0; i < elements.count; ++i)
+    for (std::size_t c = 0; c < form.components; ++c)
+      numbers.push_back(numberAt(elements.data + i * elements.stride, c, elements.componentType));
+  return numbers;
 }
 
 RawTriangles readTriangles(const File& file, const tinygltf::Primitive& primitive, const std::string& pointer) {

@@ -39,6 +39,13 @@ struct RawTriangles {
 /// Why an accessor's data cannot be had though the file may be valid ("is sparse"); empty if it can.
 std::string unsupportedData(const File& file, int accessor);
 
+/// What an animation's accessor holds: times, translations or scales (floats only), or rotations (floats or normalised
+/// integers).
+enum class NumberKind { scalar, vector, quaternion };
+
+/// The numbers of an accessor whose data is supported, one after the other; not checked to be finite. Throws InputError.
+std::vector<double> readNumbers(const File& file, int accessor, const std::string& pointer, NumberKind kind);
+
 /// Reads a primitive of triangles whose accessors are supported. Every access is checked against accessor, bufferView and
 /// buffer first. Throws InputError that names the one at fault.
 RawTriangles readTriangles(const File& file, const tinygltf::Primitive& primitive, const std::string& pointer);

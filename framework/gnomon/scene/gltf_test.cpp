@@ -1,90 +1,20 @@
 #include "gnomon/scene/gltf.h"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cmath>
-#include <fstream>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
 
-#include "gnomon/base/error.h"
+#include "gnomon/scene/gltf_test.h"
 
 namespace gnomon {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using gltf_test::bytesOf;
+using gltf_test::Json;
 
-template <class T>
-std::string bytesOf(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
-}
-
-/// A folder of its own for each test.
-class Gltf : public testing::Test {
- protected:
-  Gltf() {
-    const testing::TestInfo* const test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / ("gnomon_gltf_" + std::string(test->name()) + std::to_string(::getpid()));
-    fs::create_directories(folder_ / "inner");
-  }
-  ~Gltf() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    return folder_ / name;
-  }
-
-  /// A unit right triangle in z = 0 with 16-bit indices: accessor 0 positions, 1 indices; buffer in data.bin.
-  Json triangle(const std::string& buffer = "data.bin") const {
-    const std::string bytes = bytesOf<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytesOf<std::uint16_t>({0, 1, 2, 0});
-    write("data.bin", bytes);
-    return Json{
-        {"asset", {{"version", "2.0"}}},
-        {"scene", 0},
-        {"scenes", {{{"nodes", {0}}}}},
-        {"nodes", {{{"mesh", 0}, {"name", "thing"}}}},
-        {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}}},
-        {"accessors",
-         {{{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
-          {{"bufferView", 1}, {"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}}}},
-        {"bufferViews",
-         {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 36}}, {{"buffer", 0}, {"byteOffset", 36}, {"byteLength", 6}}}},
-        {"buffers", {{{"uri", buffer}, {"byteLength", 44}}}}};
-  }
-
-  /// The triangle with other bytes of positions and indices (of this component type).
-  Json withData(const std::string& positions, const std::string& indices, int componentType, int indexCount) const {
-    Json json = triangle();
-    write("data.bin", positions + indices);
-    json["buffers"][0]["byteLength"] = positions.size() + indices.size();
-    json["bufferViews"][0]["byteLength"] = positions.size();
-    json["bufferViews"][1] = {{"buffer", 0}, {"byteOffset", positions.size()}, {"byteLength", indices.size()}};
-    json["accessors"][0]["count"] = positions.size() / 12;
-    json["accessors"][1]["componentType"] = componentType;
-    json["accessors"][1]["count"] = indexCount;
-    return json;
-  }
-
-  Scene load(const Json& json) const { return loadGltf(write("test.gltf", json.dump())); }
-
-  /// The pointer of the InputError that loading ends in; "none" if it does not.
-  std::string faultOf(const Json& json) const { return faultOf(write("test.gltf", json.dump())); }
-  static std::string faultOf(const fs::path& path) {
-    try {
-      loadGltf(path);
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.problems().at(0).file, path.string());
-      return error.problems().at(0).pointer;
-    }
-    return "none";
-  }
-
-  fs::path folder_;
-};
+class Gltf : public gltf_test::GltfTest {};
 
 TEST_F(Gltf, ReadsATriangle) {
   const Scene scene = load(triangle());
@@ -240,6 +170,39 @@ TEST_F(Gltf, ReadsACamera) {
   EXPECT_DOUBLE_EQ(camera.verticalFovDegrees, glm::degrees(1.0));
   EXPECT_EQ(camera.target, glm::dvec3(1.0, 2.0, 2.0));
   EXPECT_EQ(camera.near, 0.5);
+}
+
+TEST_F(Gltf, NamesEveryCameraOfItsScene) {
+  Json json = triangle();
+  const Json perspective = {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.5}}}};
+  json["cameras"] = {perspective, perspective, perspective};
+  json["cameras"][1]["name"] = "own";
+  json["nodes"].push_back({{"camera", 0}, {"name", "node"}, {"translation", {1.0, 2.0, 3.0}}});
+  json["nodes"].push_back({{"camera", 1}});
+  json["nodes"].push_back({{"camera", 2}});
+  json["nodes"].push_back({{"camera", 2}, {"name", "of no scene"}});
+  json["scenes"][0]["nodes"] = {0, 1, 2, 3};
+  const Scene scene = load(json);
+  ASSERT_EQ(scene.cameras.size(), 3u);
+  EXPECT_EQ(scene.cameras[0].name, "node");
+  EXPECT_EQ(scene.cameras[1].name, "own");
+  EXPECT_EQ(scene.cameras[2].name, "camera_2");
+  EXPECT_EQ(scene.camera->position, glm::dvec3(1.0, 2.0, 3.0));
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST_F(Gltf, LightsBearTheirNodesNameOrTheirOwn) {
+  Json json = triangle();
+  json["extensionsUsed"] = {"KHR_lights_punctual"};
+  json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"name", "bulb"}}};
+  const Json extensions = {{"KHR_lights_punctual", {{"light", 0}}}};
+  json["nodes"].push_back({{"extensions", extensions}});
+  json["nodes"][0]["extensions"] = extensions;
+  json["scenes"][0]["nodes"] = {0, 1};
+  const Scene scene = load(json);
+  ASSERT_EQ(scene.lights.size(), 2u);
+  EXPECT_EQ(scene.lights[0].name, "thing");
+  EXPECT_EQ(scene.lights[1].name, "bulb");
 }
 
 TEST_F(Gltf, ReadsPunctualLights) {

@@ -90,6 +90,11 @@ std::shared_ptr<const FieldTable> sourceTable() {
 
 }  // namespace
 
+Light withoutName(Light light) {
+  light.name.clear();
+  return light;
+}
+
 LightFrame lightFrame(const Light& light) {
   const Axes axes = lookAxes(light.position, light.target, light.up);
   const double roll = glm::radians(light.source.rollDegrees);
@@ -165,6 +170,7 @@ std::shared_ptr<const FieldTable> lightTable() {
           real("radius", &Light::radius, {0.0, infinity, "m"}, Binding::uniform, "point: radius of its sphere"),
           real("angular_diameter_degrees", &Light::angularDiameterDegrees, {0.0, 180.0, "degrees"}, Binding::uniform,
                "directional: diameter of the disc of directions; the sun's is 0.53"),
+          text("name", &Light::name, "what people call the light"),
       }
           .checked(checkLight)
           .table();

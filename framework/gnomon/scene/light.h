@@ -32,7 +32,11 @@ struct Light {
   Source source;                        ///< spot
   double radius = 0.0;                  ///< point: of its sphere, metres
   double angularDiameterDegrees = 0.0;  ///< directional: of the disc of directions
+  std::string name = {};                ///< for people; may be empty, and occur twice
 };
+
+/// The same light: what keys of results and references are made of, since a name changes no picture.
+Light withoutName(Light light);
 
 /// Orthonormal axes; the light looks along -z. `up` parallel to the axis falls back to [0,0,-1], then to [1,0,0].
 struct LightFrame {

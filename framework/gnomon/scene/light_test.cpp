@@ -251,6 +251,15 @@ TEST(LightTable, ReadsTheDesignsExample) {
   EXPECT_EQ(light.source.rollDegrees, 5.0);
 }
 
+TEST(LightTable, NamesAreAnyTextAndCanBeTakenOff) {
+  Light light;
+  EXPECT_EQ(faults(R"({"type": "spot", "intensity": 2, "name": "Küche, \"links\""})", &light), Pointers{});
+  EXPECT_EQ(light.name, "Küche, \"links\"");
+  const Light bare = withoutName(light);
+  EXPECT_EQ(bare.name, "");
+  EXPECT_EQ(bare.intensity, 2.0);
+}
+
 TEST(LightTable, SourcesWithoutExtentAreLegal) {
   EXPECT_EQ(faults(R"({"type": "spot", "source": {"shape": "rectangle", "size": [0, 0]}})"), Pointers{});
 }

@@ -1,5 +1,6 @@
 #include "gnomon/scene/scene.h"
 
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
@@ -63,6 +64,12 @@ Triangle worldTriangle(const Scene& scene, const Instance& instance, std::size_t
   const Mesh& mesh = scene.meshes[instance.mesh];
   const auto corner = [&](std::size_t i) { return transformed(instance.world, mesh.positions[mesh.indices[3 * t + i]]); };
   return {corner(0), corner(1), corner(2)};
+}
+
+bool isUsableTransform(const glm::dmat4& world) {
+  for (int i = 0; i < 16; ++i)
+    if (!(std::abs(world[i / 4][i % 4]) <= kMaxTransform)) return false;
+  return true;
 }
 
 std::string contentHash(const Scene& scene) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gnomon/scene/animation.h"
 #include "gnomon/scene/camera.h"
 #include "gnomon/scene/light.h"
 
@@ -55,13 +56,20 @@ struct Bounds {
   }
 };
 
+struct NamedCamera {
+  std::string name;
+  Camera camera;
+};
+
 struct Scene {
   std::string name;
   std::vector<Mesh> meshes;
   std::vector<Material> materials;
-  std::vector<Instance> instances;
+  std::vector<Instance> instances;  ///< in their pose at time 0, where something moves
   std::vector<Light> lights;
-  std::optional<Camera> camera;
+  std::optional<Camera> camera;      ///< what the scene is looked at with
+  std::vector<NamedCamera> cameras;  ///< those that a file names, the first being `camera`; names may occur twice
+  Animation animation;
   std::vector<std::string> warnings;  ///< what an importer dropped or does not support, a line each
 
   std::size_t triangles() const;  ///< over all instances
@@ -77,7 +85,14 @@ struct Triangle {
 };
 Triangle worldTriangle(const Scene& scene, const Instance& instance, std::size_t t);
 
-/// A hash of all that decides a picture of the scene: geometry, transforms, materials, flags (not names, not lights).
+/// No entry's magnitude goes beyond this: times any float, and squared, it is still finite.
+inline constexpr double kMaxTransform = 1e100;
+
+/// Whether all entries are finite and at most kMaxTransform.
+bool isUsableTransform(const glm::dmat4& world);
+
+/// A hash of all that decides a picture of the scene: geometry, transforms, materials, flags. Not names, not lights; of what
+/// moves only the pose that the instances have.
 std::string contentHash(const Scene& scene);
 
 }  // namespace gnomon

@@ -173,6 +173,7 @@ SceneSurvey survey(const Scene& scene, const Light& light, const Camera& camera,
     if (instance.casts) result.casterTriangles += triangles;
     if (instance.receives) result.receiverTriangles += triangles;
   }
+  result.movingInstances = scene.animation.riders.size();
   result.sourceHasExtent = hasExtent(light);
 
   const LightFrame frame = lightFrame(light);

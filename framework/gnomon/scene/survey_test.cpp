@@ -364,5 +364,11 @@ TEST(ContentHash, SeesGeometryAndFlagsButNotNames) {
   EXPECT_NE(contentHash(scene), contentHash(other));
 }
 
+TEST(Survey, CountsWhatRidesOnTheAnimation) {
+  Scene scene = findBuiltinScene("animated")->make(findBuiltinScene("animated")->defaults);
+  EXPECT_EQ(survey(scene, scene.lights.at(0), *scene.camera, {64, 48}).movingInstances, scene.animation.riders.size());
+  EXPECT_GT(scene.animation.riders.size(), 0u);
+}
+
 }  // namespace
 }  // namespace gnomon

@@ -110,6 +110,11 @@ Finding fitting(const SceneSurvey& survey) {
                       survey.nearestCasterDistance, survey.farthestReceiverDistance)};
 }
 
+Finding motion(const SceneSurvey& survey) {
+  return {survey.movingInstances > 0, static_cast<double>(survey.movingInstances),
+          fmt::format("{} instances ride on an animation of the scene", survey.movingInstances)};
+}
+
 std::vector<Finding> findings(const SceneSurvey& survey, const Light& light, const Camera& camera) {
   const Finding soft = penumbra(survey);
   return {soft,
@@ -121,7 +126,7 @@ std::vector<Finding> findings(const SceneSurvey& survey, const Light& light, con
           overlappingPenumbrae(survey, soft),
           largeDepthRange(survey, light),
           wideView(camera),
-          {false, 0.0, "0 moving nodes: scenes hold no motion"},
+          motion(survey),
           receivers(survey),
           culling(survey),
           fitting(survey),

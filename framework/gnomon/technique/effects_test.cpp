@@ -122,10 +122,18 @@ TEST(EffectPlan, DepthRangeIsLargeAbove256) {
 
 TEST(EffectPlan, WhatTheSceneCannotHoldIsOff) {
   const EffectPlan decided = plan(softScene());
-  for (const Effect effect : {Effect::alphaTestedCasters, Effect::translucentCasters, Effect::motion}) {
+  for (const Effect effect : {Effect::alphaTestedCasters, Effect::translucentCasters}) {
     EXPECT_FALSE(decided.has(effect));
     EXPECT_EQ(decision(decided, effect).value, 0.0);
   }
+}
+
+TEST(EffectPlan, MotionIsWhereInstancesRideOnAnAnimation) {
+  SceneSurvey survey = softScene();
+  EXPECT_FALSE(plan(survey).has(Effect::motion));
+  survey.movingInstances = 3;
+  EXPECT_TRUE(plan(survey).has(Effect::motion));
+  EXPECT_EQ(decision(plan(survey), Effect::motion).value, 3.0);
 }
 
 TEST(EffectPlan, WhatWasNotSurveyedHasNoNumber) {

@@ -22,6 +22,7 @@ struct Entry {
   EntryNotes notes;
   std::shared_ptr<const FieldTable> parameters;
   std::function<std::shared_ptr<void>()> makeParameters;  ///< with defaults
+  /// The technique keeps the reference: see Technique.
   std::function<std::unique_ptr<Technique>(const void* parameters)> create;
 };
 
@@ -29,7 +30,7 @@ struct PluginEntries {
   std::vector<Entry> entries;
 };
 
-/// An entry for `T`, a Technique with a `T::Parameters` type and a constructor from it.
+/// An entry for `T`, a Technique with a constructor from `const P&`, which it keeps as a reference.
 template <class T, class P>
 Entry entry(std::string name, const ParameterTable<P>& table, EntryNotes notes) {
   return {std::move(name), std::move(notes), table.table(), [] { return std::make_shared<P>(); },

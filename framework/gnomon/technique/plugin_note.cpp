@@ -7,7 +7,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/base/files.h"
-#include "gnomon/technique/registry.h"
+#include "gnomon/technique/library.h"
 
 namespace gnomon {
 
@@ -49,14 +49,17 @@ std::string tagInNotes(const std::string& bytes, std::size_t offset, std::size_t
 }  // namespace
 
 std::string pluginAbiTag(const std::filesystem::path& library) {
-  const std::string bytes = readFile(library);
+  return pluginAbiTag(readFile(library), library.string());
+}
+
+std::string pluginAbiTag(const std::string& bytes, const std::string& name) {
   Elf64_Ehdr header{};
   if (!readAt(bytes, 0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
       header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_type != ET_DYN) {
-    throw Error(library.string() + " is not a 64-bit ELF shared object");
+    throw Error(name + " is not a 64-bit ELF shared object");
   }
   // The loader maps segments without asking whether the file reaches that far: touching what was cut off ends the process.
-  const auto cutShort = [&] { return Error(library.string() + " is cut short"); };
+  const auto cutShort = [&] { return Error(name + " is cut short"); };
   if (!inside(bytes, header.e_shoff, std::size_t{header.e_shnum} * header.e_shentsize)) throw cutShort();
   std::string tag;
   for (std::size_t i = 0; i < header.e_phnum; ++i) {

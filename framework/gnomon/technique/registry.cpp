@@ -1,14 +1,10 @@
 #include "gnomon/technique/registry.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
-
-#include "gnomon/base/files.h"
-#include "gnomon/technique/plugin_note.h"
 
 namespace gnomon {
 
@@ -32,14 +28,9 @@ std::vector<std::filesystem::path> jsonFiles(const std::filesystem::path& direct
 
 }  // namespace
 
-struct Registry::Library {
-  void* handle = nullptr;
-  const PluginEntries* entries = nullptr;
-};
-
-Registry::Registry(const std::vector<std::filesystem::path>& directories) {
+Registry::Registry(const std::vector<std::filesystem::path>& directories, std::shared_ptr<Libraries> libraries)
+    : libraries_(libraries ? std::move(libraries) : std::make_shared<Libraries>()) {
   std::map<std::string, std::filesystem::path> firstFile;
-  std::set<std::string> twice;
   std::set<std::filesystem::path> seenFiles;  // a folder may be named twice, or lie in another
   for (const auto& directory : directories) {
     std::error_code ignored;
@@ -70,23 +61,42 @@ Registry::Registry(const std::vector<std::filesystem::path>& directories) {
       for (const TechniqueDeclaration& declaration : file.techniques) {
         const auto [first, isNew] = firstFile.emplace(declaration.name, path);
         if (!isNew) {
-          twice.insert(declaration.name);
-          problems_.add(path.string(), "/techniques/" + declaration.name,
-                        fmt::format("'{}' is registered by {} too; neither counts until one is renamed", declaration.name,
-                                    first->second.string()));
+          sharedNames_.push_back({declaration.name, first->second, path});
+          const Problem problem = problemOf(sharedNames_.back());
+          problems_.add(problem.file, problem.pointer, problem.message);
           continue;
         }
         techniques_.push_back({declaration, path, library});
       }
     }
   }
-  std::erase_if(techniques_, [&](const RegisteredTechnique& t) { return twice.contains(t.declaration.name); });
+  for (const SharedName& shared : sharedNames_)
+    std::erase_if(techniques_, [&](const RegisteredTechnique& t) { return t.declaration.name == shared.name; });
   std::sort(techniques_.begin(), techniques_.end(),
             [](const auto& a, const auto& b) { return a.declaration.name < b.declaration.name; });
 }
 
-// Libraries stay open until the process ends: unloading one whose code or type infos are still referenced would crash.
-Registry::~Registry() = default;
+Problem Registry::problemOf(const SharedName& shared) {
+  return {shared.other.string(), "/techniques/" + shared.name,
+          fmt::format("'{}' is registered by {} too; neither counts until one is renamed", shared.name, shared.first.string())};
+}
+
+Problems Registry::problemsOf(const std::filesystem::path& file) const {
+  const auto isIt = [&](const std::filesystem::path& other) {
+    std::error_code ignored;
+    return std::filesystem::equivalent(file, other, ignored);
+  };
+  Problems found;
+  for (const Problem& problem : problems_.list()) {
+    if (isIt(problem.file)) found.add(problem.file, problem.pointer, problem.message);
+  }
+  for (const SharedName& shared : sharedNames_) {  // told above for the second file alone
+    if (!isIt(shared.first)) continue;
+    const Problem problem = problemOf({shared.name, shared.other, shared.first});
+    found.add(problem.file, problem.pointer, problem.message);
+  }
+  return found;
+}
 
 std::vector<std::string> Registry::names() const {
   std::vector<std::string> names;
@@ -126,31 +136,14 @@ OpenTechnique Registry::open(const std::string& name) {
                       nearest.empty() ? "; `gnomon list` shows those that are" : "; did you mean '" + nearest + "'?")}});
   }
   const std::filesystem::path& path = registered->library;
-  const auto fail = [&](const std::string& message) { throw InputError({{registered->file.string(), "/library", message}}); };
-  std::unique_ptr<Library>& library = libraries_[path];
-  if (!library) {
-    std::string tag;
-    try {
-      tag = pluginAbiTag(path);
-    } catch (const Error& error) {
-      fail(error.what());
-    }
-    if (tag != frameworkAbiTag()) {
-      fail(fmt::format(
-          "{} was built for another framework: its tag is '{}', this one's is '{}'; rebuild it. None of its code was run",
-          path.filename().string(), tag.empty() ? "none" : tag, frameworkAbiTag()));
-    }
-    auto opened = std::make_unique<Library>();
-    opened->handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (opened->handle == nullptr) fail(fmt::format("cannot be loaded: {}", dlerror()));
-    using Function = const PluginEntries* (*)();
-    const auto function = reinterpret_cast<Function>(dlsym(opened->handle, "gnomon_plugin"));
-    if (function == nullptr) fail(path.filename().string() + " does not export gnomon_plugin; end it with GNOMON_PLUGIN(...)");
-    opened->entries = function();
-    library = std::move(opened);
+  const PluginEntries*& library = opened_[path];
+  try {
+    if (library == nullptr) library = &libraries_->open(path);
+  } catch (const Error& error) {
+    throw InputError({{registered->file.string(), "/library", error.what()}});
   }
   std::vector<std::string> offered;
-  for (const Entry& entry : library->entries->entries) {
+  for (const Entry& entry : library->entries) {
     if (entry.name == registered->declaration.entry) return {registered, &entry};
     offered.push_back(entry.name);
   }

@@ -10,6 +10,7 @@
 #include "gnomon/base/error.h"
 #include "gnomon/base/json.h"
 #include "gnomon/technique/entry.h"
+#include "gnomon/technique/library.h"
 #include "gnomon/technique/technique_file.h"
 
 namespace gnomon {
@@ -23,28 +24,32 @@ struct RegisteredTechnique {
 
 /// A technique with all that is needed to make and describe it: its library has been opened.
 struct OpenTechnique {
-  const RegisteredTechnique* registered = nullptr;
-  const Entry* entry = nullptr;
+  const RegisteredTechnique* registered = nullptr;  ///< the registry's, which outlives what was opened from it
+  const Entry* entry = nullptr;                     ///< the library's: valid to the end of the process
 };
 
+/// What technique files said when it was made; files that change later need another registry. It outlives every OpenTechnique
+/// that it gave, and the sessions that use them.
 class Registry {
  public:
   /// Reads every *.json in `directories` and their direct sub-folders. Broken files become problems(); a name that two
-  /// files register counts for neither.
-  explicit Registry(const std::vector<std::filesystem::path>& directories);
-  ~Registry();
+  /// files register counts for neither. Registries with the same `libraries` load a library again only when its file changed;
+  /// null: libraries of its own.
+  explicit Registry(const std::vector<std::filesystem::path>& directories, std::shared_ptr<Libraries> libraries = {});
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
 
   const std::vector<RegisteredTechnique>& techniques() const { return techniques_; }
   const Problems& problems() const { return problems_; }
+  /// What speaks against that file: its own faults, and its names that other files register too.
+  Problems problemsOf(const std::filesystem::path& file) const;
   std::vector<std::string> names() const;
   const RegisteredTechnique* find(const std::string& name) const;
   /// The one with that role, or null; the first by name where there are several.
   const RegisteredTechnique* withRole(TechniqueRole role) const;
 
-  /// Opens the library. Throws InputError: unknown name (with the nearest), missing library, foreign ABI (its code was not
-  /// run), no such entry.
+  /// Opens the library, which this registry then keeps as it was. Throws InputError: unknown name (with the nearest), missing
+  /// or half-written library, foreign ABI (its code was not run), no such entry.
   OpenTechnique open(const std::string& name);
 
   /// Defaults, then the JSON file's preset, then `overrides`. Faults go to `problems` under `where`.
@@ -55,16 +60,17 @@ class Registry {
   static std::filesystem::path directory(const RegisteredTechnique& technique) { return technique.file.parent_path(); }
 
  private:
-  struct Library;
+  struct SharedName {
+    std::string name;
+    std::filesystem::path first, other;  ///< files that register it
+  };
+  static Problem problemOf(const SharedName& shared);
+
+  std::shared_ptr<Libraries> libraries_;
   std::vector<RegisteredTechnique> techniques_;
   Problems problems_;
-  std::map<std::filesystem::path, std::unique_ptr<Library>> libraries_;
+  std::vector<SharedName> sharedNames_;
+  std::map<std::filesystem::path, const PluginEntries*> opened_;  ///< by library
 };
-
-/// The ABI tag in the ELF note of a plugin, read from the file; empty when it has none. Throws Error for a file that is no
-/// 64-bit ELF shared object, or is cut short.
-std::string pluginAbiTag(const std::filesystem::path& library);
-/// The tag that this framework accepts.
-std::string frameworkAbiTag();
 
 }  // namespace gnomon

@@ -31,6 +31,7 @@ struct Frame {
   Light light;  ///< its kind and shape; its pose may change without set-up
   GBuffer gbuffer;
   int maxTextureSize = 0;  ///< of this driver
+  Buffer parameters = {};  ///< the generated block; a cpu pass that uses a uniform parameter names it in CpuPass::after
 };
 
 /// Whether and how a technique can serve here.
@@ -49,6 +50,9 @@ struct Outputs {
       {};  ///< r8: 1 where a technique claims to be valid; reported apart, never shrinks the mask
 };
 
+/// A technique is made with a reference to its parameters and keeps that reference: they are the session's copy, outlive the
+/// technique and its graph, and the values of those bound as `uniform` change between frames. Whatever else differs makes
+/// another technique, so support and setup may rest on all but them.
 class Technique {
  public:
   virtual ~Technique() = default;

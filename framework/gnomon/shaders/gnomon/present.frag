@@ -6,7 +6,8 @@ uniform int channel;
 uniform float divider;
 uniform float scale;
 uniform vec2 range;
-uniform vec2 windowSize;
+uniform vec2 corner;  // of the viewport, pixels
+uniform vec2 extent;
 out vec4 colour;
 
 vec3 encoded(vec3 linear) {
@@ -15,11 +16,12 @@ vec3 encoded(vec3 linear) {
 }
 
 void main() {
-  const vec2 at = vec2(gl_FragCoord.x, windowSize.y - gl_FragCoord.y) / windowSize;
+  const vec2 pixel = gl_FragCoord.xy - corner;
+  const vec2 at = vec2(pixel.x, extent.y - pixel.y) / extent;
   const vec4 a = textureLod(left, at, 0.0);
   const vec4 b = textureLod(right, at, 0.0);
   if (mode == 0) {
-    const bool onDivider = abs(gl_FragCoord.x - divider * windowSize.x) < 1.0;
+    const bool onDivider = divider > 0.0 && divider < 1.0 && abs(pixel.x - divider * extent.x) < 1.0;
     colour = vec4(onDivider ? vec3(1.0) : encoded(at.x < divider ? a.rgb : b.rgb), 1.0);
   } else if (mode == 1) {
     const float t = clamp((a.r - b.r) / scale, -1.0, 1.0);

@@ -1,0 +1,107 @@
+#include "stage.h"
+
+#include <epoxy/gl.h>
+
+#include "gnomon/base/clock.h"
+
+namespace gnomon {
+
+namespace {
+
+/// The last run of each pass: one that was skipped keeps its time.
+void update(std::vector<PassReport>& kept, std::vector<PassReport>&& now, bool timed) {
+  if (kept.size() != now.size()) kept.assign(now.size(), {});
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    PassReport before = std::move(kept[i]);
+    kept[i] = std::move(now[i]);
+    if (kept[i].ran && timed) continue;
+    kept[i].cpuMs = before.cpuMs;
+    kept[i].wallMs = before.wallMs;
+  }
+}
+
+}  // namespace
+
+bool Stage::render(std::size_t index, const ResolvedTechnique& technique, bool timePasses) {
+  StageEntry& e = entries_.at(index);
+  if (!e.failure.empty()) return false;
+  try {
+    const bool cold = !e.slot;
+    if (cold) {
+      e.slot = session_.addSlot(technique.technique, technique.parameters);
+      e.failure = refusalOf(*e.slot);
+      if (!e.failure.empty()) return false;
+    }
+    passesRun_ += session_.runShared().counters.passesRun;
+    if (cold) passesRun_ += session_.runTechnique(*e.slot).counters.passesRun;  // first draws compile: they are no cost to show
+    glFinish();
+    const double cpu = processCpuMs();
+    const double wall = wallMs();
+    GraphReport report =
+        session_.runTechnique(*e.slot, {.skipUnchanged = !cold && (!timePasses || e.timed), .timePasses = timePasses});
+    glFinish();
+    if (report.counters.passesRun > 0) {
+      e.cpuMs = processCpuMs() - cpu;
+      e.wallMs = wallMs() - wall;
+    }
+    e.timed = e.timed || timePasses;
+    passesRun_ += report.counters.passesRun;
+    update(e.passes, std::move(report.passes), timePasses);
+    passesRun_ += session_.runShading(*e.slot).counters.passesRun;
+    return true;
+  } catch (const std::exception& error) {
+    e.failure = error.what();
+    return false;
+  }
+}
+
+std::string Stage::change(std::size_t index, const ResolvedTechnique& technique) {
+  StageEntry& e = entries_.at(index);
+  if (!e.slot) {
+    e = {};  // what refused or failed may serve with other values
+    return {};
+  }
+  try {
+    session_.setParameters(*e.slot, technique.technique, technique.parameters);
+    e.timed = false;
+    e.failure = refusalOf(*e.slot);
+    return e.failure;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+std::string Stage::replace(std::size_t index, const ResolvedTechnique& technique) {
+  StageEntry& e = entries_.at(index);
+  if (!e.slot) {
+    e = {};
+    return {};
+  }
+  try {
+    session_.replaceSlot(*e.slot, technique.technique, technique.parameters);
+    e.timed = false;
+    e.failure = refusalOf(*e.slot);
+    return {};
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+void Stage::forgetTimes() {
+  for (StageEntry& entry : entries_) entry.timed = false;
+}
+
+void Stage::showPicture(const std::shared_ptr<TextureResource>& visibility) {
+  if (picture_) {
+    session_.replacePicture(*picture_, visibility);
+  } else {
+    picture_ = session_.addPicture(visibility);
+  }
+}
+
+void Stage::renderPicture() {
+  passesRun_ += session_.runShared().counters.passesRun;
+  passesRun_ += session_.runShading(*picture_).counters.passesRun;
+}
+
+}  // namespace gnomon
