@@ -7,6 +7,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/base/files.h"
+#include "gnomon/gl/state.h"
 #include "gnomon/technique/parameter_block.h"
 
 namespace gnomon {
@@ -40,6 +41,9 @@ glm::ivec2 rowsWithAny(const Image& pixels) {
           static_cast<int>(pixels.data.rend() - last - 1) / pixels.width + 1};
 }
 
+/// Of a slot that runs nothing.
+const GraphReport kNothing;
+
 /// Never moved: technique and graph refer to `parameters`, and go before them.
 struct SlotState {
   std::string name;
@@ -52,6 +56,8 @@ struct SlotState {
   std::unique_ptr<Graph> shading;
   Texture shaded;
   std::shared_ptr<TextureResource> visibility;
+  FrameReport report;  ///< kept, so that frames take no memory
+  std::shared_ptr<std::set<std::string>> defences = std::make_shared<std::set<std::string>>();  ///< of its shaders
 };
 
 }  // namespace
@@ -63,6 +69,8 @@ struct Session::State {
   EffectPlan plan;
   GpuScene gpu;
   Revisions revisions;
+  GraphShares ofSlots;
+  GraphShares programsAlone;  ///< for what belongs to no technique
   Graph shared;
   SessionPasses passes;
   std::shared_ptr<TextureResource> fullyLit;
@@ -73,7 +81,9 @@ struct Session::State {
         survey(gnomon::survey(setup.scene, setup.light, setup.camera, setup.outputSize)),
         plan(planForAll(setup, survey)),
         gpu(setup.scene),
-        shared("session", setup.outputSize, frameworkShaders()) {
+        ofSlots{std::make_shared<gl::ProgramCache>(), setup.sharePasses ? makeSharedPasses() : nullptr},
+        programsAlone{ofSlots.programs, nullptr},
+        shared("session", setup.outputSize, frameworkShaders(), programsAlone) {
     passes = sessionPasses(shared.builder(), setup.outputSize);
     const std::vector<Texture> kept{passes.gbuffer.position, passes.gbuffer.normal, passes.gbuffer.ids, passes.gbuffer.depth,
                                     passes.gbuffer.mask,     passes.shadingNormal,  passes.albedo};
@@ -91,7 +101,7 @@ struct Session::State {
     return {setup.scene, survey.instanceBounds, gpu, setup.light, setup.camera, setup.outputSize, 0.0};
   }
 
-  GraphReport run(Graph& graph, const GraphRun& options) {
+  const GraphReport& run(Graph& graph, const GraphRun& options) {
     GraphRun all = options;
     all.skipUnchanged = options.skipUnchanged && plan.has(Rule::skipping);
     all.messages = &messages;
@@ -120,8 +130,10 @@ struct Session::State {
 
   void setUpTechnique(SlotState& slot, const OpenTechnique& technique) {
     gl::ShaderSources sources = frameworkShaders();
-    sources.directories.insert(sources.directories.begin(), Registry::directory(*technique.registered));
-    slot.graph = std::make_unique<Graph>(slot.name, setup.outputSize, std::move(sources));
+    sources.directories.insert(sources.directories.begin(), technique.directories.begin(), technique.directories.end());
+    sources.defencesOff = plan.defencesOff();
+    sources.defencesMet = slot.defences;
+    slot.graph = std::make_unique<Graph>(slot.name, setup.outputSize, std::move(sources), ofSlots);
     GraphBuilder& graph = slot.graph->builder();
     const FieldTable& table = *technique.entry->parameters;
     const std::vector<std::byte> block = parameterBlockBytes(table, slot.parameters.get());
@@ -129,7 +141,7 @@ struct Session::State {
     slot.graph->uniforms().write(slot.block, block);
     graph.provide("Parameters", slot.block);
     graph.include("parameters", parameterBlockText(table));
-    for (const Constant& constant : parameterConstants(table, slot.parameters.get())) graph.constant(constant);
+    slot.graph->specialise(parameterConstants(table, slot.parameters.get()));
 
     Frame frame{setup.outputSize, setup.light, importGBuffer(graph), 0, slot.block};
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &frame.maxTextureSize);
@@ -145,10 +157,11 @@ struct Session::State {
     std::vector<Texture> kept{outputs.visibility};
     if (outputs.admissible) kept.push_back(*outputs.admissible);
     slot.graph->compile(kept);
+    requireDeclared(*slot.entry, *slot.defences);
   }
 
   void setUpShading(SlotState& slot) {
-    slot.shading = std::make_unique<Graph>("shading", setup.outputSize, frameworkShaders());
+    slot.shading = std::make_unique<Graph>("shading", setup.outputSize, frameworkShaders(), programsAlone);
     GraphBuilder& graph = slot.shading->builder();
     importGBuffer(graph);
     graph.provide("gShadingNormal", graph.import("gShadingNormal", shared.resource(passes.shadingNormal)));
@@ -159,9 +172,13 @@ struct Session::State {
 
   SlotState& at(Slot slot) { return *slots.at(slot.index); }
 
-  /// Runs code of a plugin. Whatever it throws is copied into an Error that names it, and what OpenGL said of it ends with it.
+  /// Runs code of a plugin. Whatever it throws is copied into an Error that names it; what OpenGL said of it, and state that
+  /// it left, end with it.
   template <class Work>
-  auto guarded(const std::string& technique, const Work& work) {
+  decltype(auto) guarded(const std::string& technique, const Work& work) {
+    struct Restored {
+      ~Restored() { gl::restoreState(); }
+    } const restored;
     std::string message;
     try {
       return work();
@@ -203,20 +220,34 @@ struct Session::State {
     return slot;
   }
 
-  /// Whether the slot can go on with these values: the technique is the same, and only uniform ones differ.
+  /// Whether the slot can go on with these values: the technique is the same, and its structure.
   static bool serves(const SlotState& slot, const OpenTechnique& technique, const void* parameters) {
     if (slot.entry != technique.entry || slot.name != technique.registered->declaration.name) return false;
-    const std::vector<Field>& fields = technique.entry->parameters->fields();
+    return agree(slot, parameters, Binding::structure);
+  }
+
+  static bool agree(const SlotState& slot, const void* parameters, Binding binding) {
+    const std::vector<Field>& fields = slot.entry->parameters->fields();
     return std::all_of(fields.begin(), fields.end(), [&](const Field& field) {
-      return field.binding == Binding::uniform || equalValue(field, slot.parameters.get(), parameters);
+      return field.binding != binding || equalValue(field, slot.parameters.get(), parameters);
     });
   }
 
-  static void writeParameters(const SlotState& slot, const void* parameters) {
-    for (const Field& field : slot.entry->parameters->fields()) {
-      if (field.binding == Binding::uniform) copyValue(field, slot.parameters.get(), parameters);
+  /// Programs first: if one does not compile, all stays as it was.
+  void writeParameters(SlotState& slot, const void* parameters) {
+    const FieldTable& table = *slot.entry->parameters;
+    const bool sameConstants = agree(slot, parameters, Binding::specialise);
+    if (sameConstants && agree(slot, parameters, Binding::uniform)) return;
+    if (slot.graph && !sameConstants) {
+      guarded(slot.name, [&] { slot.graph->specialise(parameterConstants(table, parameters)); });
+      slot.graph->touch(slot.block);  // cpu passes see constants through the parameters themselves
     }
-    if (slot.graph) slot.graph->uniforms().write(slot.block, parameterBlockBytes(*slot.entry->parameters, parameters));
+    for (const Field& field : table.fields()) {
+      if (field.binding != Binding::structure) copyValue(field, slot.parameters.get(), parameters);
+    }
+    if (!slot.graph) return;
+    slot.graph->uniforms().write(slot.block, parameterBlockBytes(table, parameters));
+    guarded(slot.name, [&] { slot.graph->refreshSharing(); });
   }
 };
 
@@ -301,7 +332,7 @@ bool Session::setParameters(Slot slot, const OpenTechnique& technique, const std
     replaceSlot(slot, technique, parameters);
     return true;
   }
-  State::writeParameters(state_->at(slot), parameters.get());
+  state_->writeParameters(state_->at(slot), parameters.get());
   return false;
 }
 
@@ -319,11 +350,20 @@ void Session::removeSlots() {
   state_->slots.clear();
 }
 
+void Session::cut() {
+  for (const auto& slot : state_->slots) {
+    if (slot->graph) slot->graph->cut();
+  }
+}
+
 const Support& Session::support(Slot slot) const {
   return state_->at(slot).support;
 }
 Facts Session::facts(Slot slot) const {
   return state_->at(slot).graph ? state_->at(slot).graph->facts() : Facts{};
+}
+std::set<std::string> Session::defences(Slot slot) const {
+  return *state_->at(slot).defences;
 }
 std::size_t Session::memoryBytes(Slot slot) const {
   return state_->at(slot).graph ? state_->at(slot).graph->memoryBytes() : 0;
@@ -336,25 +376,25 @@ bool Session::hasCpuPasses(Slot slot) const {
   return state_->at(slot).graph && state_->at(slot).graph->hasCpuPasses();
 }
 
-GraphReport Session::runShared(const GraphRun& options) {
+const GraphReport& Session::runShared(const GraphRun& options) {
   return state_->run(state_->shared, options);
 }
 
-GraphReport Session::runTechnique(Slot slot, const GraphRun& options) {
+const GraphReport& Session::runTechnique(Slot slot, const GraphRun& options) {
   SlotState& s = state_->at(slot);
-  if (!s.graph) return {};
-  return state_->guarded(s.name, [&] {
+  if (!s.graph) return kNothing;
+  return state_->guarded(s.name, [&]() -> const GraphReport& {
     s.technique->update(state_->inputs(), s.graph->uniforms());
     return state_->run(*s.graph, options);
   });
 }
 
-GraphReport Session::runShading(Slot slot, const GraphRun& options) {
+const GraphReport& Session::runShading(Slot slot, const GraphRun& options) {
   return state_->run(*state_->at(slot).shading, options);
 }
 
-FrameReport Session::frame(Slot slot, const GraphRun& options) {
-  FrameReport report;
+const FrameReport& Session::frame(Slot slot, const GraphRun& options) {
+  FrameReport& report = state_->at(slot).report;
   report.shared = runShared(options);
   report.technique = runTechnique(slot, options);
   report.shading = runShading(slot, options);
@@ -380,7 +420,7 @@ std::vector<std::shared_ptr<TextureResource>> Session::textures(Slot slot) const
     const auto own = graph->textures();
     all.insert(all.end(), own.begin(), own.end());
   }
-  std::erase_if(all, [](const auto& texture) { return texture->info.format == Format::rg32ui; });
+  std::erase_if(all, [](const auto& texture) { return texture->info.format == Format::rg32ui || texture->info.layers > 0; });
   return all;
 }
 std::optional<std::size_t> Session::instanceAt(glm::ivec2 pixel) const {

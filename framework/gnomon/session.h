@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct SessionSetup {
   glm::ivec2 outputSize{800, 600};
   PlanOverrides overrides;
   std::vector<Light> lightPoses;  ///< poses that the light will take: the plan holds for all of them
+  /// Slots share the passes that are the same in several (Graph): for showing them in turn. Never where slots are timed, since
+  /// one would get for nothing what another has paid for.
+  bool sharePasses = false;
 };
 
 /// Handle of a slot.
@@ -62,9 +66,10 @@ class Session {
   Slot addSlot(const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
   /// Sets another technique or other parameters up in a slot's place. If that throws, the slot stays as it was.
   void replaceSlot(Slot slot, const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
-  /// Other values for the parameters of a slot's technique. Where only `uniform` ones differ nothing is set up and nothing is
-  /// compiled: the block is written, and the passes that read it run again at the next frame. Returns whether the slot was set
-  /// up anew; if that throws, the slot stays as it was.
+  /// Other values for the parameters of a slot's technique. Where no `structure` one differs nothing is set up: the block is
+  /// written, programs that mention a changed constant are compiled or found among the last ones, and these passes and those
+  /// that read the block run again at the next frame. Returns whether the slot was set up anew; if that throws, the slot stays
+  /// as it was.
   bool setParameters(Slot slot, const OpenTechnique& technique, const std::shared_ptr<const void>& parameters);
   /// A slot without a technique: shows a visibility that is made elsewhere, and again whenever its revision rises. r16f or
   /// r32f, the output's size; throws Error for another. runTechnique does nothing for it.
@@ -72,6 +77,8 @@ class Session {
   /// Another visibility in such a slot's place.
   void replacePicture(Slot slot, const std::shared_ptr<TextureResource>& visibility);
   void removeSlots();
+  /// What comes has nothing to do with the last frame: histories of all slots start again.
+  void cut();
 
   /// Receivers are only looked for where `pixels` (one channel, the output's size) is above 0.5: the receiver mask is
   /// intersected with it, so that techniques work on a part of the picture. An empty image: everywhere again. Throws Error for
@@ -81,15 +88,17 @@ class Session {
   const Support& support(Slot slot) const;
   /// Facts as of the last frame.
   Facts facts(Slot slot) const;
+  /// Names of the defences that its shaders hold, on or off.
+  std::set<std::string> defences(Slot slot) const;
   std::size_t memoryBytes(Slot slot) const;
   std::vector<std::string> passNames(Slot slot) const;
   bool hasCpuPasses(Slot slot) const;
 
-  /// The three parts of a frame, in order; each runs only what changed.
-  GraphReport runShared(const GraphRun& options = {});
-  GraphReport runTechnique(Slot slot, const GraphRun& options = {});
-  GraphReport runShading(Slot slot, const GraphRun& options = {});
-  FrameReport frame(Slot slot, const GraphRun& options = {});
+  /// The three parts of a frame, in order; each runs only what changed. A report holds until its part, or the slot, runs again.
+  const GraphReport& runShared(const GraphRun& options = {});
+  const GraphReport& runTechnique(Slot slot, const GraphRun& options = {});
+  const GraphReport& runShading(Slot slot, const GraphRun& options = {});
+  const FrameReport& frame(Slot slot, const GraphRun& options = {});
 
   /// Of the last frame: V, one channel.
   Image visibility(Slot slot) const;
@@ -98,7 +107,8 @@ class Session {
   /// The same, where they lie.
   const TextureResource& visibilityTexture(Slot slot) const;
   const TextureResource& shadedTexture(Slot slot) const;
-  /// Everything that can be looked at: the shared passes' textures, then the slot's own. Integer textures are left out.
+  /// Everything that can be looked at: the shared passes' textures, then the slot's own. Integer textures, arrays and transient
+  /// ones are left out.
   std::vector<std::shared_ptr<TextureResource>> textures(Slot slot) const;
   /// Of the last frame: the instance that the camera sees at a pixel (rows from the top); none for the background, and outside.
   std::optional<std::size_t> instanceAt(glm::ivec2 pixel) const;

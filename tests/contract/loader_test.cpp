@@ -115,6 +115,24 @@ TEST(Loader, LibraryWithoutEntries) {
                                                               HasSubstr("does not export gnomon_plugin"))));
 }
 
+TEST(Loader, LibraryThatNeedsAnotherWhichIsNotThere) {
+  const PluginFolder plugin("trace");
+  std::string bytes = readFile(plugin.library());
+  const std::string needed = "libstdc++.so.6";
+  const std::size_t at = bytes.find(needed);
+  ASSERT_NE(at, std::string::npos);
+  plugin.folder().write("trace.so", bytes.replace(at, needed.size(), "libnowhere.so9"));
+  EXPECT_THAT(refusal(plugin, "trace"), ElementsAre(AllOf(HasSubstr(plugin.json().string() + ": /library: trace.so "),
+                                                          HasSubstr("libnowhere.so9"), HasSubstr("cannot open"))));
+}
+
+TEST(Loader, LibraryThatNeedsASymbolWhichNobodyHas) {
+  const PluginFolder plugin("lacks_symbol");
+  EXPECT_THAT(refusal(plugin, "lacks_symbol"),
+              ElementsAre(AllOf(HasSubstr(plugin.json().string() + ": /library: lacks_symbol.so "),
+                                HasSubstr("undefined symbol"), HasSubstr("nobodyDefinesThis"))));
+}
+
 TEST(Loader, EntryThatTheLibraryDoesNotHave) {
   const PluginFolder plugin("trace");
   plugin.setJson(R"({"library": "trace", "techniques": {"trace": {"title": "t", "entry": "trase"}}})");

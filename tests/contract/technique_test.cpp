@@ -102,6 +102,8 @@ const std::vector<Misdeed> kMisdeeds{
     {"undeclared_write", When::frame, {"pass 'work'", "did not declare"}},
     {"wrong_amount", When::frame, {"pass 'work'", "3072", "3071"}},
     {"two_writers", When::addSlot, {"pass 'second'", "'shared'", "writer"}},
+    {"too_large", When::addSlot, {"16384x16384"}},
+    {"undeclared_defence", When::addSlot, {"GNOMON_DEFENCE(nobody_declared_this)", "notes"}},
     {"read_before_write", When::addSlot, {"pass 'early'", "'later'", "before any pass writes it"}},
 };
 
@@ -114,6 +116,45 @@ TEST(Contract, WithoutFaultTheSameTechniqueRenders) {  // else every misdeed abo
   const Slot slot = addTestSlot(session, "mischief", Json{{"fault", "none"}});
   session.frame(slot);
   EXPECT_THAT(session.visibility(slot).data, Each(1.0f));
+}
+
+TEST(Contract, WhatIsNotANumberIsFoundByCheckFinite) {
+  ensureContext();
+  Session session(smallSetup());
+  const Slot slot = addTestSlot(session, "mischief", Json{{"fault", "not_a_number"}});
+  try {
+    session.frame(slot, {.checkFinite = true});
+    FAIL() << "a NaN passed";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("technique 'mischief': pass 'work': target 'visibility' holds"), HasSubstr("63")));
+  }
+}
+
+TEST(Contract, StateThatATechniqueLeavesChangesNoOther) {
+  ensureContext();
+  const auto render = [](Session& session, const std::string& technique, const std::string& json) {
+    const Slot slot = addSlot(session, technique, json);
+    session.frame(slot);
+    const Image shaded = session.shaded(slot);
+    std::vector<float> all = session.visibility(slot).data;
+    all.insert(all.end(), shaded.data.begin(), shaded.data.end());
+    return all;
+  };
+  const auto renderAll = [&](Session& session) {
+    std::vector<std::vector<float>> all;
+    all.push_back(render(session, "shadow_map", R"({"map_size": 64})"));
+    all.push_back(render(session, "pcf", R"({"map_size": 64})"));
+    all.push_back(render(session, "ray_traced", R"({"samples": 2})"));
+    return all;
+  };
+  Session clean(smallSetup());
+  const auto expected = renderAll(clean);
+  Session session(smallSetup());
+  session.frame(addTestSlot(session, "mischief", Json{{"fault", "leaves_state"}}));
+  EXPECT_EQ(renderAll(session), expected);
+  Session later(smallSetup());  // its G-buffer is drawn in that state too
+  EXPECT_EQ(renderAll(later), expected);
 }
 
 TEST(Contract, ARefusalIsToldAndRendersNothing) {

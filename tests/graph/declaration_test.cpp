@@ -65,7 +65,7 @@ TEST_F(Declaration, TwoWritersAreRefused) {
   const Texture texture = builder.texture("shared", {{8, 4}, Format::r32f});
   cpuWriter("first", texture);
   EXPECT_THAT(errorOf([&] { cpuWriter("second", texture); }),
-              AllOf(HasSubstr("'second'"), HasSubstr("'shared'"), HasSubstr("has a writer already")));
+              AllOf(HasSubstr("'second'"), HasSubstr("'shared'"), HasSubstr("has a writer already, 'first'")));
 }
 
 TEST_F(Declaration, ASecondWriterOfAFullscreenPassesTargetIsRefused) {
@@ -102,6 +102,21 @@ TEST_F(Declaration, TargetsThatDifferInSizeAreRefused) {
   const RasterPass pass{.vertex = "gnomon/gbuffer.vert", .draws = builder.drawList("all"), .colours = {colour}, .depth = depth};
   EXPECT_THAT(errorOf([&] { builder.raster("draw", pass); }),
               AllOf(HasSubstr("'draw'"), HasSubstr("'deep'"), HasSubstr("differ in size")));
+}
+
+TEST_F(Declaration, ATextureOfAnotherSizeMayBeRead) {
+  const Texture large = builder.fullscreen("large", {.shader = shaderWriting(builder, "3.0"), .size = glm::ivec2(16, 16)});
+  const Texture out = reader("small", large);
+  compile({out});
+  bench.run(*graph);
+  EXPECT_EQ(graph->read(out).at(7, 3), 3.0f);
+}
+
+TEST_F(Declaration, APassThatReadsWhatItWritesIsRefused) {
+  const Texture texture = builder.texture("both", {{8, 4}, Format::r32f});
+  cpuWriter("first", texture);
+  EXPECT_THAT(errorOf([&] { builder.cpu("again", {.reads = {texture}, .writes = {texture}, .run = [](CpuContext&) {}}); }),
+              AllOf(HasSubstr("'again'"), HasSubstr("'both'")));
 }
 
 TEST_F(Declaration, ARasterPassWithoutTargetsIsRefused) {

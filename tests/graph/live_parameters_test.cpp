@@ -104,8 +104,40 @@ TEST_F(LiveShadowMap, AnotherStructureIsSetUpAnew) {
   EXPECT_EQ(session_.facts(slot_).mapSize, glm::ivec2(32));
 }
 
-TEST_F(LiveShadowMap, ASpecialisedConstantIsSetUpAnew) {
-  EXPECT_TRUE(set(R"({"map_size": 64, "bias.receiver_plane": true})"));
+TEST_F(LiveShadowMap, ASpecialisedConstantSetsNothingUp) {
+  EXPECT_FALSE(set(R"({"map_size": 64, "bias.receiver_plane": true})"));
+}
+
+TEST_F(LiveShadowMap, ASpecialisedConstantRunsWhatUsesItAndDrawsNoMap) {
+  set(R"({"map_size": 64, "bias.receiver_plane": true})");
+  const std::vector<std::string> passes = ran(session_.frame(slot_).technique);
+  EXPECT_THAT(passes, testing::Not(testing::Contains("light depth")));
+  EXPECT_EQ(passes.size(), 2U);  // the fit, which states the constant among its facts, and the comparison
+  EXPECT_TRUE(session_.facts(slot_).receiverPlane);
+}
+
+TEST_F(LiveShadowMap, ASpecialisedConstantGivesTheBitsOfAFreshSlot) {
+  const std::string other = R"({"map_size": 64, "bias.receiver_plane": true})";
+  const std::vector<float> before = session_.visibility(slot_).data;
+  set(other);
+  session_.frame(slot_);
+  EXPECT_NE(session_.visibility(slot_).data, before);
+  EXPECT_EQ(session_.visibility(slot_).data, renderVisibility(smallSetup(), "shadow_map", other).data);
+}
+
+TEST_F(LiveShadowMap, ASpecialisedConstantThatComesBackCompilesNothing) {
+  set(R"({"map_size": 64, "bias.receiver_plane": true})");
+  session_.frame(slot_);
+  const LinkedPrograms linked;
+  EXPECT_FALSE(set(R"({"map_size": 64})"));
+  session_.frame(slot_);
+  EXPECT_EQ(linked.count(), 0);
+}
+
+TEST_F(LiveShadowMap, ASecondSlotCompilesNothing) {
+  const LinkedPrograms linked;
+  session_.frame(addSlot(session_, "shadow_map", R"({"map_size": 64})"));
+  EXPECT_EQ(linked.count(), 0);
 }
 
 TEST_F(LiveShadowMap, AnotherTechniqueIsSetUpAnew) {
@@ -133,6 +165,17 @@ TEST_F(LiveShadowMap, CullingLeavesRoomForTheNormalBias) {  // receivers look up
   const std::uint64_t after = drawn(slot_);
   EXPECT_GT(after, before);
   EXPECT_EQ(after, drawn(addSlot(session_, "shadow_map", wide)));
+}
+
+TEST(LiveParameters, TheTapsOfPcfGiveTheBitsOfAFreshSlot) {  // a constant of the filter, and how far the map must reach
+  Session session(smallSetup());
+  const Slot slot = addSlot(session, "pcf", R"({"map_size": 64, "taps": 3})");
+  session.frame(slot);
+  const std::string wide = R"({"map_size": 64, "taps": 9})";
+  EXPECT_FALSE(setParameters(session, slot, "pcf", wide));
+  session.frame(slot);
+  EXPECT_EQ(session.facts(slot).filterRadiusTexels, 4.0);
+  EXPECT_EQ(session.visibility(slot).data, renderVisibility(smallSetup(), "pcf", wide).data);
 }
 
 // --- whose values they are ---

@@ -1,6 +1,9 @@
 // Batches from end to end: what is recorded, what the exit code says, and what --resume and --shard do.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -250,6 +253,24 @@ TEST_F(Batch, ResumeOfAWholeBatchDoesNothing) {
   EXPECT_THAT(namesIn(folder_ / "cache"), IsEmpty()) << "no reference is needed";
 }
 
+TEST_F(Batch, ResumeRunsAJobAgainWhosePictureIsMissing) {
+  configure(kThreeJobs);
+  ASSERT_EQ(run().exitCode, 0);
+  const std::vector<Json> first = results();
+  std::filesystem::remove(out_ / "images" / (first[0]["job"].get<std::string>() + "_visibility.png"));
+  std::filesystem::remove(out_ / "images" / (first[2]["job"].get<std::string>() + ".exr"));
+  const Outcome outcome = run({"--resume"});
+  EXPECT_THAT(outcome.out, HasSubstr("1 of 3 results were there already")) << outcome.all();
+  EXPECT_TRUE(std::filesystem::exists(out_ / "images" / (first[0]["job"].get<std::string>() + "_visibility.png")));
+  EXPECT_TRUE(std::filesystem::exists(out_ / "images" / (first[2]["job"].get<std::string>() + ".exr")));
+}
+
+TEST_F(Batch, ResumeWithoutExrDoesNotMissThem) {
+  configure(kThreeJobs);
+  ASSERT_EQ(run({"--no-exr"}).exitCode, 0);
+  EXPECT_THAT(run({"--no-exr", "--resume"}).out, HasSubstr("3 of 3 results were there already"));
+}
+
 TEST_F(Batch, ResumeRunsAFailedJobAgain) {
   configure(R"({"techniques": [{"technique": "mischief", "parameters": {"fault": "throw_in_setup"}}]})");
   const std::vector<std::string> options{"--no-exr", "--resume", "--technique-dir", testPluginFolder("mischief")};
@@ -299,6 +320,45 @@ INSTANTIATE_TEST_SUITE_P(
         std::pair{"Frames", R"({"measure": {"frames": 4}})"}, std::pair{"Blocks", R"({"measure": {"blocks": 2}})"},
         std::pair{"Regimes", R"({"measure": {"regimes": ["static"]}})"}),
     [](const auto& each) { return std::string(each.param.first); });
+
+// --- two at once ---
+
+/// Holds the results as another batch would.
+class OtherBatch {
+ public:
+  explicit OtherBatch(const std::filesystem::path& lock) : file_(::open(lock.c_str(), O_RDWR)) {
+    held = file_ >= 0 && ::flock(file_, LOCK_EX | LOCK_NB) == 0;
+  }
+  ~OtherBatch() { ::close(file_); }
+  OtherBatch(const OtherBatch&) = delete;
+  OtherBatch& operator=(const OtherBatch&) = delete;
+  bool held = false;
+
+ private:
+  int file_;
+};
+
+TEST_F(Batch, ResultsThatAnotherBatchIsWritingAreLeftAlone) {
+  configure("{}");
+  ASSERT_EQ(run({"--no-exr"}).exitCode, 0);
+  const std::string before = readFile(out_ / "results.jsonl");
+  const OtherBatch other(out_ / ".results.jsonl.lock");
+  ASSERT_TRUE(other.held);
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"--no-exr"}, {"--no-exr", "--resume"}}) {
+    const Outcome outcome = run(options);
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_THAT(outcome.lines("error"), ElementsAre(AllOf(HasSubstr("results.jsonl: another batch"), HasSubstr("--shard"))));
+  }
+  EXPECT_EQ(readFile(out_ / "results.jsonl"), before);
+}
+
+TEST_F(Batch, AnotherShardMayRunBesideIt) {
+  configure(kThreeJobs);
+  ASSERT_EQ(run({"--no-exr", "--shard", "0/2"}).exitCode, 0);
+  const OtherBatch other(out_ / ".results.0.jsonl.lock");
+  ASSERT_TRUE(other.held);
+  EXPECT_EQ(run({"--no-exr", "--shard", "1/2"}).exitCode, 0);
+}
 
 // --- shards ---
 

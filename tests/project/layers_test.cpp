@@ -40,6 +40,7 @@ bool mayInclude(const std::string& path, const std::string& layer, const std::st
   if (layer == "plugin") return rank(included) <= rank("maps");  // the plugins' one header
   if (layer == "image") return included == "base";
   if (layer == "stability") return included == "image" || rank(included) <= rank("measure");
+  if (layer == "check") return included == "stability" || rank(included) <= rank("measure");
   if (included == "image") return rank(layer) >= rank("measure") && rank(layer) < kLayers.size();
   if (rank(layer) == kLayers.size() || rank(included) == kLayers.size()) return false;  // a layer that nobody put in order
   if (layer == "scene" && included == "gl") return path.find("scene/gpu_scene.") != std::string::npos;
@@ -71,6 +72,8 @@ TEST(Layers, WrongWaysAreSeen) {  // the test above would see them
   EXPECT_EQ(wrong("image/a.cpp", "\"gnomon/gl/objects.h\""), 1U);
   EXPECT_EQ(wrong("base/a.cpp", "\"gnomon/image/image_io.h\""), 1U);
   EXPECT_EQ(wrong("run/a.cpp", "\"gnomon/plugin.h\""), 1U);
+  EXPECT_EQ(wrong("check/a.cpp", "\"gnomon/run/batch.h\""), 1U);
+  EXPECT_EQ(wrong("stability/a.cpp", "\"gnomon/check/check.h\""), 1U);
   EXPECT_EQ(wrong("newcomer/a.cpp", "\"gnomon/run/batch.h\""), 1U);
   EXPECT_EQ(wrong("scene/gpu_scene.cpp", "\"gnomon/gl/objects.h\""), 0U);
   EXPECT_EQ(wrong("run/a.cpp", "\"gnomon/session.h\""), 0U);

@@ -2,7 +2,7 @@
 
 Usage: schema_cross_check.py PROBE SOURCE_TREE
 
-Every value of two full documents is replaced by values of every kind, removed, or given a stranger; for each of these
+Every value of full documents is replaced by values of every kind, removed, or given a stranger; for each of these
 documents the schema and the reader must agree whether it is valid. What only a reader can know (limits between two keys)
 is listed in BEYOND_SCHEMAS with a pattern of its message. The files of the source tree must be valid too.
 """
@@ -27,7 +27,7 @@ LIGHTS = [{"type": "spot", "position": [6, 10, 4], "target": [0, 0, 0], "cone_ha
           {"type": "point", "position": [6, 10, 4], "radius": 0.5}]
 
 RUN = {"$schema": "schema/run.schema.json", "name": "x", "scene": {"builtin": "sphere_grid", "count": 7},
-       "plan": {"penumbra": "off", "culling": "auto"},
+       "plan": {"penumbra": "off", "culling": "auto", "without": ["min_variance"]},
        "camera": {"position": [0, 9, 14], "target": [0, 0, 0], "vertical_fov_degrees": 45},
        "lights": [LIGHTS[0]],
        "output": {"size": [800, 600], "images": ["shaded", "error"]},
@@ -37,15 +37,24 @@ RUN = {"$schema": "schema/run.schema.json", "name": "x", "scene": {"builtin": "s
 
 TECHNIQUE = {"$schema": "technique.schema.json", "library": "l",
              "techniques": {"a": {"title": "t", "entry": "e"},
-                            "b": {"title": "t", "entry": "e", "role": "floor", "parameters": {"x": 1}}}}
+                            "b": {"title": "t", "entry": "e", "role": "floor", "parameters": {"x": 1}},
+                            "c": {"title": "t", "compose": {"projection": "p", "representation": "r", "footprint": "f"}}},
+             "components": {"d": {"title": "t", "axis": "footprint"}}}
 
-VALUES = [None, True, False, 0, -1, 1, 3.0, 0.5, 90, 91, 179.5, 180, 16384, 16385, 1e10, 1e-9, "", "x", "on", "pcf", "Spot",
-          "../l", [], [1], [1, 2], [1, 2, 3], [1, 2, 3, 4], ["a", "a"], ["shaded", "shaded"], ["shaded"], {}, {"a": 1},
+# A technique's parameters of every kind, with all that a range may say.
+PARAMETERS = {"on": True, "taps": 5, "odd": 7, "tile": 128, "level": 0.5, "threshold": 1e-4, "kernel": "gaussian",
+              "size": [64, 128], "odd_size": 3, "bias.slope": 1.5}
+
+VALUES = [None, True, False, 0, -1, 1, 2, 3.0, 4.0, 0.5, 63, 64, 64.0, 100, 192, 90, 91, 179.5, 180, 16384, 16385, 1e10, 1e-9, "", "x", "on", "pcf", "Spot",
+          "../l", [], [1], [1, 2], [1, 2, 3], [1, 2, 3, 4], [3, 5], [64, 64], [64, 65], [2.0, 4], ["a", "a"], ["shaded", "shaded"], ["shaded"], {}, {"a": 1},
           {"seed": 1}, {"seed": [1]}, {"m": []}, {"m": [1, 1.0]}, {"m": 1}, [{}], [{"technique": "x"}]]
 
 # A document that only the reader refuses, by what it says.
-BEYOND_SCHEMAS = [r"is also set in parameters", r"means something only for a source of shape",
+BEYOND_SCHEMAS = [r"is also set in parameters", r'has neither "(entry|techniques)"', r'has both "entry" and "compose"',
+                  r'has no "library"', r"means something only for a source of shape",
                   r"vertical_fov_degrees: must be less than 180"]  # tables have open lower ends only
+
+FILES = {"run": "configs/*.json", "technique": "plugins/*/*.json"}
 
 REMOVED = object()
 STRANGER = object()
@@ -115,11 +124,11 @@ def check(probe, kind, schema, docs):
 def main():
     probe, tree = sys.argv[1], pathlib.Path(sys.argv[2])
     failed = False
-    for kind, whole, more in (("run", RUN, list(variants())), ("technique", TECHNIQUE, [])):
+    for kind, whole, more in (("run", RUN, list(variants())), ("technique", TECHNIQUE, []), ("parameters", PARAMETERS, [])):
         schema = json.loads(subprocess.check_output([probe, "schema", kind]))
         jsonschema.Draft202012Validator.check_schema(schema)
-        files = sorted(tree.glob("configs/*.json")) if kind == "run" else sorted(tree.glob("plugins/*/*.json"))
-        if not files:
+        files = sorted(tree.glob(FILES[kind])) if kind in FILES else []
+        if kind in FILES and not files:
             raise SystemExit(f"{tree} has no files of the kind {kind}")
         validator = jsonschema.Draft202012Validator(schema)
         for file in files:

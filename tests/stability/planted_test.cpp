@@ -1,10 +1,8 @@
 // Each defect that the suite is there for, planted in a copy of a real plugin, is caught and named.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <regex>
+#include <set>
 
-#include "gnomon/base/files.h"
 #include "planted.h"
 #include "render.h"
 
@@ -68,8 +66,8 @@ TEST(Planted, DarkOutsideTheMapIsAcne) {
 }
 
 TEST(Planted, KernelThatWrapsAroundIsAcne) {
-  PlantedTechnique planted("pcf", {{kDepthMap, "float isLit(sampler2D map, Receiver r, vec2 uv) {",
-                                    "float isLit(sampler2D map, Receiver r, vec2 uv) { uv = fract(uv);"}});
+  PlantedTechnique planted(
+      "pcf", {{kDepthMap, "float isLit(MapPoint r, vec2 uv) {", "float isLit(MapPoint r, vec2 uv) { uv = fract(uv);"}});
   EXPECT_TRUE(failsWith(planted.check("receiver_outside_map"), "acne"));
 }
 
@@ -79,19 +77,20 @@ TEST(Planted, MaskIgnoredIsDarkOutsideIt) {
 }
 
 TEST(Planted, VisibilityOfTwoIsOutOfRange) {
-  PlantedTechnique planted("shadow_map", {{"shadow_map.frag", "visibility = isLit(", "visibility = 2.0 * isLit("}});
+  PlantedTechnique planted("shadow_map", {{"nearest.frag", "visibility = visibilityAt(", "visibility = 2.0 * visibilityAt("}});
   EXPECT_TRUE(failsWith(planted.check("scale_1e-4"), "out of [0,1]"));
 }
 
 TEST(Planted, DivisionByNothingIsNotFinite) {  // 0 / 0 where a receiver is wholly dark
-  PlantedTechnique planted("pcf", {{"pcf.frag", "visibility = lit / float(TAPS * TAPS);", "visibility = lit / lit;"}});
+  PlantedTechnique planted(
+      "pcf", {{"fixed.frag", "= filteredVisibility(f, p);", "= filteredVisibility(f, p) / filteredVisibility(f, p);"}});
   const CellReport cell = planted.check("world_moved_1e6");
   EXPECT_TRUE(failsWith(cell, "technique 'planted': pass 'filter': target 'filter' holds"));
 }
 
 TEST(Planted, ShortKernelIsALeakOfItsLastTap) {  // 1/25 of light is 4 per cent: no tolerance hides it
-  PlantedTechnique planted(
-      "pcf", {{"pcf.frag", "visibility = lit / float(TAPS * TAPS);", "visibility = (lit + 1.0) / float(TAPS * TAPS + 1);"}});
+  PlantedTechnique planted("pcf", {{"fixed.frag", "= filteredVisibility(f, p);",
+                                    "= (filteredVisibility(f, p) * float(TAPS * TAPS) + 1.0) / float(TAPS * TAPS + 1);"}});
   EXPECT_TRUE(failsWith(planted.check("world_moved_1e6"), "leak"));
 }
 
@@ -108,10 +107,10 @@ TEST(Planted, LengthBuiltInFailsInASmallWorld) {  // a bias of a millimetre, in 
 }
 
 TEST(Planted, CompileErrorFailsTheCellWithItsLine) {
-  PlantedTechnique planted("shadow_map", {{"shadow_map.frag", "visibility = isLit(", "visibility == isLit(("}});
+  PlantedTechnique planted("shadow_map", {{"nearest.frag", "visibility = visibilityAt(", "visibility == visibilityAt(("}});
   const CellReport cell = planted.check("world_moved_1e6");
   ASSERT_EQ(cell.outcome, Outcome::fail);
-  EXPECT_NE(cell.reasons.at(0).find("shadow_map.frag:"), std::string::npos) << cell.reasons.at(0);
+  EXPECT_NE(cell.reasons.at(0).find("nearest.frag:"), std::string::npos) << cell.reasons.at(0);
 }
 
 TEST(Planted, ReferenceThatIsWrongDoesNotJudgeItself) {  // the floor registered as the reference: truth comes from geometry
@@ -123,43 +122,59 @@ TEST(Planted, WhatIsNeverTheSameTwiceIsNotTheSameBits) {
   ensureContext();
   Registry unsteady({std::filesystem::path(GNOMON_BINARY_DIR) / "test_plugins" / "unsteady",
                      installationDirectory() / "plugins" / "unshadowed"});
-  const CellReport cell = runStability(unsteady, {"unsteady"}, {findCase("world_moved_1e6")}).cells.at(0);
+  const CellReport cell = runStability(unsteady, {{"unsteady"}, {findCase("world_moved_1e6")}}).cells.at(0);
   EXPECT_TRUE(failsWith(cell, "not the same bits in a second, fresh session"));
   EXPECT_TRUE(failsWith(cell, "not the same bits after another technique ran"));
 }
 
-/// A guard of the shaders, and a cell that fails without it.
-struct Defence {
-  const char* name;
-  const char* plugin;
+/// A defence, and a cell that passes with it and fails without.
+struct Need {
+  const char* defence;
+  const char* technique;
   const char* hardCase;
 };
-constexpr Defence kDefences[] = {{"behind_light", "shadow_map", "normal_offset_behind_light"},
-                                 {"plane_beyond_far", "pcf", "light_in_plane"}};
+constexpr Need kNeeds[] = {{"behind_light", "shadow_map", "normal_offset_behind_light"},
+                           {"plane_beyond_far", "pcf", "light_in_plane"},
+                           {"log_domain", "esm", "light_in_plane"}};
 /// What this renderer does not show: without it slopes are infinite or NaN where a receiver's plane passes through the light,
 /// and llvmpipe's min and max drop NaN. What they do is undefined in GLSL.
 constexpr const char* kUndefinedWithout = "plane_through_light";
 
 TEST(Defences, EachIsNeededBySomeCase) {
-  for (const Defence& defence : kDefences) {
-    PlantedTechnique planted(defence.plugin, {{kDepthMap, std::string("GNOMON_DEFENCE(") + defence.name + ")", "false"}});
-    EXPECT_EQ(planted.check(defence.hardCase).outcome, Outcome::fail) << defence.name;
+  ensureContext();
+  for (const Need& need : kNeeds) {
+    const Case* hardCase = findCase(need.hardCase);
+    EXPECT_EQ(runStability(registry(), {{need.technique}, {hardCase}}).cells.at(0).outcome, Outcome::pass) << need.defence;
+    EXPECT_EQ(runStability(registry(), {{need.technique}, {hardCase}, {need.defence}}).cells.at(0).outcome, Outcome::fail)
+        << need.defence;
   }
 }
 
-TEST(Defences, EveryOneInTheShadersIsListedHere) {
-  const std::regex pattern(R"(GNOMON_DEFENCE\((\w+)\))");
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(installationDirectory())) {
-    const std::string extension = entry.path().extension().string();
-    if (extension != ".glsl" && extension != ".frag" && extension != ".vert") continue;
-    const std::string text = readFile(entry.path());
-    for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) {
-      const std::string name = (*match)[1];
-      if (name == "name" || name == kUndefinedWithout) continue;  // "name": its definition
-      EXPECT_TRUE(std::any_of(std::begin(kDefences), std::end(kDefences), [&](const Defence& d) { return name == d.name; }))
-          << entry.path() << ": the defence " << name << " has no case that fails without it";
-    }
+TEST(Defences, EveryDeclaredOneIsListedHere) {
+  ensureContext();
+  std::set<std::string> names;
+  for (const Defence& defence : frameworkDefences()) names.insert(defence.name);
+  for (const std::string& technique : registry().names()) {
+    for (const Defence& defence : registry().open(technique).entry->notes.defences) names.insert(defence.name);
   }
+  for (const std::string& name : names) {
+    if (name == kUndefinedWithout) continue;
+    EXPECT_TRUE(std::any_of(std::begin(kNeeds), std::end(kNeeds), [&](const Need& need) { return name == need.defence; }))
+        << "the defence " << name << " has no case that fails without it";
+  }
+}
+
+TEST(Defences, AnUnknownNameIsToldBeforeAnythingRuns) {
+  ensureContext();
+  bool ran = false;
+  try {
+    runStability(registry(), {{"shadow_map"}, {&cases().front()}, {"behind_lihgt"}}, [&](const CellReport&) { ran = true; });
+    FAIL() << "an unknown defence was switched off";
+  } catch (const InputError& error) {
+    EXPECT_NE(error.problems().at(0).message.find("did you mean \"behind_light\""), std::string::npos)
+        << error.problems().at(0).message;
+  }
+  EXPECT_FALSE(ran);
 }
 
 }  // namespace

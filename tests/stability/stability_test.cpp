@@ -24,14 +24,14 @@ const StabilityReport& matrix() {
     ensureContext();
     std::vector<const Case*> all;
     for (const Case& c : cases()) all.push_back(&c);
-    return runStability(registry(), registry().names(), all);
+    return runStability(registry(), {registry().names(), all});
   }();
   return report;
 }
 
 CellReport cellOf(const std::string& technique, const Case& hardCase) {
   ensureContext();
-  return runStability(registry(), {technique}, {&hardCase}).cells.at(0);
+  return runStability(registry(), {{technique}, {&hardCase}}).cells.at(0);
 }
 
 TEST(StabilityMatrix, NoCellFails) {
@@ -122,8 +122,9 @@ TEST(StabilityCell, SetsMapParametersOnlyWhereThereAreAny) {  // ray_traced has 
 TEST(StabilityRun, RefusesAnUnknownTechniqueBeforeAnythingRuns) {
   ensureContext();
   bool ran = false;
-  EXPECT_THROW(runStability(registry(), {"unshadowed", "no_such"}, {&cases().front()}, [&](const CellReport&) { ran = true; }),
-               InputError);
+  EXPECT_THROW(
+      runStability(registry(), {{"unshadowed", "no_such"}, {&cases().front()}}, [&](const CellReport&) { ran = true; }),
+      InputError);
   EXPECT_FALSE(ran);
 }
 

@@ -24,12 +24,20 @@ struct RenderOptions {
   bool exr = true;
   bool checkFinite = false;
   bool measureTime = true;
-  std::string shard;  ///< "i/n"
+  std::string shard;                      ///< "i/n"
+  std::vector<std::string> without = {};  ///< defences to switch off, besides those of the configs
 };
 
 struct StabilityOptions {
   std::vector<std::string> techniques;  ///< empty: all
   std::vector<std::string> cases;       ///< empty: all
+  std::vector<std::string> without;     ///< defences to switch off
+  bool list = false;
+};
+
+struct CheckOptions {
+  std::filesystem::path plugin;   ///< a technique file, or a folder of them
+  std::vector<std::string> only;  ///< names of checks; empty: all
   bool list = false;
 };
 
@@ -41,5 +49,8 @@ int schemaCommand(const std::filesystem::path& directory);
 int planCommand(const CommonOptions& common, const std::filesystem::path& config);
 int renderCommand(const CommonOptions& common, const RenderOptions& options);
 int stabilityCommand(const CommonOptions& common, const StabilityOptions& options);
+int checkCommand(const CommonOptions& common, const CheckOptions& options);
+/// Writes the folder `in`/`name`.
+int newTechniqueCommand(const CommonOptions& common, const std::string& name, const std::filesystem::path& in);
 
 }  // namespace gnomon

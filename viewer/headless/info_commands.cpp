@@ -1,4 +1,4 @@
-// list, describe, scenes, validate, schema: what needs no GPU.
+// list, scenes, validate, schema: what needs no GPU.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,14 +18,6 @@
 namespace gnomon {
 
 namespace {
-
-const char* roleName(TechniqueRole role) {
-  return role == TechniqueRole::reference ? "reference" : role == TechniqueRole::floor ? "floor" : "technique";
-}
-
-const char* bindingName(Binding binding) {
-  return binding == Binding::structure ? "structure" : binding == Binding::specialise ? "specialise" : "uniform";
-}
 
 void warnOfBrokenFiles(const Registry& registry) {
   for (const Problem& problem : registry.problems().list()) log::warning(problem.line());
@@ -67,6 +59,10 @@ void validateTechniqueFile(const CommonOptions& common, const std::filesystem::p
 
 }  // namespace
 
+const char* roleName(TechniqueRole role) {
+  return role == TechniqueRole::reference ? "reference" : role == TechniqueRole::floor ? "floor" : "technique";
+}
+
 std::vector<std::filesystem::path> techniqueDirectories(const CommonOptions& common) {
   std::vector<std::filesystem::path> directories{installationDirectory() / "plugins"};
   directories.insert(directories.end(), common.techniqueDirectories.begin(), common.techniqueDirectories.end());
@@ -93,35 +89,6 @@ int listCommand(const CommonOptions& common) {
     const std::string role =
         t.declaration.role == TechniqueRole::technique ? "" : fmt::format("  ({})", roleName(t.declaration.role));
     fmt::print("{:<{}}  {}{}\n", t.declaration.name, width, t.declaration.title, role);
-  }
-  return 0;
-}
-
-int describeCommand(const CommonOptions& common, const std::string& name) {
-  Registry registry(techniqueDirectories(common));
-  const OpenTechnique technique = registry.open(name);
-  const Entry& entry = *technique.entry;
-  Problems problems;
-  const std::shared_ptr<void> values = registry.parameters(technique, Json::object(), {}, problems);
-  problems.throwIfAny();
-  const TechniqueDeclaration& declared = technique.registered->declaration;
-  if (common.json) {
-    Json json{{"name", declared.name},           {"title", declared.title},
-              {"role", roleName(declared.role)}, {"paper", entry.notes.paper},
-              {"summary", entry.notes.summary},  {"schema", schemaOf(*entry.parameters, values.get())}};
-    fmt::print("{}\n", json.dump(2));
-    return 0;
-  }
-  fmt::print("{}: {}\n", declared.name, declared.title);
-  if (!entry.notes.summary.empty()) fmt::print("  {}\n", entry.notes.summary);
-  if (!entry.notes.paper.empty()) fmt::print("  {}\n", entry.notes.paper);
-  fmt::print("  role {}, {}\n", roleName(declared.role), technique.registered->file.string());
-  if (entry.parameters->fields().empty()) fmt::print("\nno parameters\n");
-  if (!entry.parameters->fields().empty())
-    fmt::print("\n{:<20} {:<12} {:<11} {}\n", "parameter", "value", "binding", "allowed, meaning");
-  for (const Field& field : entry.parameters->fields()) {
-    fmt::print("{:<20} {:<12} {:<11} {}; {}\n", field.name, valueText(field, values.get()), bindingName(field.binding),
-               allowedText(field), field.meaning);
   }
   return 0;
 }

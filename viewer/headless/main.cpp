@@ -1,5 +1,8 @@
 // gnomon: the headless runner.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "commands.h"
@@ -9,6 +12,19 @@
 namespace {
 
 using namespace gnomon;
+
+/// CLI11 says only that a command is missing where a word stands that is none.
+bool reportUnknownCommand(CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return false;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return false;
+  const std::string nearest = nearestName(argv[1], names);
+  log::error(fmt::format("no command is named '{}'{}", argv[1],
+                         nearest.empty() ? "; `gnomon --help` lists them" : "; did you mean '" + nearest + "'?"));
+  return true;
+}
 
 int run(int argc, char** argv) {
   CLI::App app{"Gnomon: which shadow technique is accurate enough, what does that cost, and does it stay stable?", "gnomon"};
@@ -20,10 +36,12 @@ int run(int argc, char** argv) {
   CommonOptions common;
   RenderOptions render;
   StabilityOptions stability;
+  CheckOptions check;
   std::string technique;
   std::vector<std::filesystem::path> files;
   std::filesystem::path config;
   std::filesystem::path schemaDirectory;
+  std::filesystem::path newFolder;
   int exitCode = 0;
 
   const auto addCommon = [&](CLI::App* command, bool needsGpu) {
@@ -39,8 +57,9 @@ int run(int argc, char** argv) {
   list->add_flag("--json", common.json, "for programs");
   list->callback([&] { exitCode = listCommand(common); });
 
-  CLI::App* describe = app.add_subcommand("describe", "a technique's parameters with unit, range and meaning");
-  addCommon(describe, false);
+  CLI::App* describe =
+      app.add_subcommand("describe", "what a technique takes, does and costs: lights, effects, parameters, defences, passes");
+  addCommon(describe, true);
   describe->add_option("technique", technique, "its name")->required();
   describe->add_flag("--json", common.json, "for programs");
   describe->callback([&] { exitCode = describeCommand(common, technique); });
@@ -71,6 +90,8 @@ int run(int argc, char** argv) {
   addRender(rendering);
   rendering->add_option("config", render.configs, "run config")->required()->expected(1);
   rendering->add_option("--out", render.out, "folder for pictures and results")->default_val("out/render");
+  rendering->add_option("--without", render.without, "a defence to switch off, to see what it is for; may be repeated")
+      ->allow_extra_args(false);
   rendering->callback([&] {
     render.measureTime = false;
     exitCode = renderCommand(common, render);
@@ -88,9 +109,25 @@ int run(int argc, char** argv) {
   addCommon(hard, true);
   hard->add_option("techniques", stability.techniques, "names; all when none is given");
   hard->add_option("--case", stability.cases, "only these cases");
+  hard->add_option("--without", stability.without, "a defence to switch off, to see which case needs it; may be repeated")
+      ->allow_extra_args(false);
   hard->add_flag("--list", stability.list, "what the cases are, and what each is for");
   hard->add_flag("--json", common.json, "for programs");
   hard->callback([&] { exitCode = stabilityCommand(common, stability); });
+
+  CLI::App* starting = app.add_subcommand("new-technique", "writes a plugin that builds and runs, with one test to fill in");
+  addCommon(starting, false);
+  starting->add_option("name", technique, "of the technique: a-z, 0-9 and _")->required();
+  starting->add_option("--in", newFolder, "folder that the plugin's folder is made in")->default_val(".");
+  starting->callback([&] { exitCode = newTechniqueCommand(common, technique, newFolder); });
+
+  CLI::App* checking = app.add_subcommand("check", "a plugin against all that its techniques promise: a line each");
+  addCommon(checking, true);
+  CLI::Option* plugin = checking->add_option("plugin", check.plugin, "its technique JSON, or the folder that it lies in");
+  checking->add_option("--only", check.only, "only these checks");
+  checking->add_flag("--list", check.list, "what is checked")->excludes(plugin);
+  checking->add_flag("--json", common.json, "for programs");
+  checking->callback([&] { exitCode = checkCommand(common, check); });
 
   CLI::App* schema = app.add_subcommand("schema", "writes the JSON Schemas that editors use");
   schema->add_option("directory", schemaDirectory, "where to")->default_val("configs/schema");
@@ -99,6 +136,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (reportUnknownCommand(app, argc, argv)) return 2;
     return app.exit(error) == 0 ? 0 : 2;
   }
   return exitCode;

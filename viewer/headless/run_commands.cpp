@@ -31,7 +31,7 @@ class ProgressLine {
                                                  elapsed / static_cast<double>(done) * static_cast<double>(total - done))
                                    : "";
       fmt::print(stderr, "\r\033[K[{}/{}{}] {}", done, total, left, what);
-      if (record != nullptr && record->status != JobStatus::ok)
+      if (record != nullptr && !record->reason.empty())
         fmt::print(stderr, "\r\033[K{} {}: {}\n", what, jobStatusName(record->status), record->reason);
       if (done == total && record != nullptr) fmt::print(stderr, "\r\033[K");
     } else if (record != nullptr) {
@@ -107,7 +107,13 @@ int renderCommand(const CommonOptions& common, const RenderOptions& options) {
   for (const auto& config : options.configs) {
     for (ResolvedRun& run : resolveRuns(config, registry, problems)) runs.push_back(std::move(run));
   }
-  problems.throwIfAny();
+  for (ResolvedRun& run : runs) {
+    for (const std::string& name : options.without) {
+      reportIfUndeclared(name, entriesOf(run), {"--without", ""}, problems);
+      run.config.plan.without.push_back(name);
+    }
+  }
+  problems.unique().throwIfAny();
   for (const ResolvedRun& run : runs) {
     for (const std::string& warning : run.scene.warnings) log::warning(run.sceneName + ": " + warning);
   }
@@ -118,6 +124,7 @@ int renderCommand(const CommonOptions& common, const RenderOptions& options) {
   fmt::print("{}\n", summaryTable(summary.records));
   if (summary.kept > 0) fmt::print("{} of {} results were there already\n", summary.kept, summary.records.size());
   fmt::print("images   {}\nresults  {}\n", (options.out / "images").string(), summary.results.string());
+  if (!summary.trace.empty()) fmt::print("trace    {}\n", summary.trace.string());
   if (summary.notOk > 0)
     fmt::print("{} of {} jobs were refused or failed; their reasons are above\n", summary.notOk, summary.records.size());
   const bool failed = std::any_of(summary.records.begin(), summary.records.end(), [](const JobRecord& r) {

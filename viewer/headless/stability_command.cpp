@@ -1,5 +1,6 @@
 // stability: the hard cases, one line a cell.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -86,14 +87,19 @@ int stabilityCommand(const CommonOptions& common, const StabilityOptions& option
   std::size_t techniqueWidth = 0;
   for (const Case* c : chosen) caseWidth = std::max(caseWidth, c->name.size());
   for (const std::string& t : techniques) techniqueWidth = std::max(techniqueWidth, t.size());
-  const StabilityReport report = runStability(registry, techniques, chosen, [&](const CellReport& cell) {
+  const Selection selection{techniques, chosen, options.without};
+  const StabilityReport report = runStability(registry, selection, [&](const CellReport& cell) {
     if (!common.json) print(cell, caseWidth, techniqueWidth);
   });
   if (common.json) {
     Json cells = Json::array();
-    for (const CellReport& cell : report.cells) cells.push_back(json(cell));
+    for (const CellReport& cell : report.cells) {
+      cells.push_back(json(cell));
+      if (!options.without.empty()) cells.back()["without"] = options.without;
+    }
     fmt::print("{}\n", cells.dump(2));
   } else {
+    if (!options.without.empty()) fmt::print("without {}: ", fmt::join(options.without, ", "));
     fmt::print("{} cells: {} pass, {} refused, {} fail\n", report.cells.size(), report.count(Outcome::pass),
                report.count(Outcome::refused), report.count(Outcome::fail));
   }

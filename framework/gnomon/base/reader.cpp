@@ -42,7 +42,7 @@ std::optional<float> floatIn(const Json& json, const Range& range) {
 
 std::optional<int> integerIn(const Json& json, const Range& range) {
   const std::optional<double> value = numberIn(json, range);
-  if (!value || std::trunc(*value) != *value) return std::nullopt;
+  if (!value || !allowsInteger(range, *value)) return std::nullopt;
   if (*value < std::numeric_limits<int>::min() || *value > std::numeric_limits<int>::max()) return std::nullopt;
   return static_cast<int>(*value);
 }

@@ -270,6 +270,52 @@ TEST(AllowedText, TellsRangesWithUnits) {
   EXPECT_EQ(allowedText(*thingTable()->find("angle")), "a number");
 }
 
+// --- integers of which some are left out ---
+
+struct Stepped {
+  int odd = 3;
+  glm::ivec2 tiles{64, 64};
+  float epsilon = 1e-3f;
+};
+
+std::shared_ptr<const FieldTable> steppedTable() {
+  return ParameterTable<Stepped>{
+      integer("odd", &Stepped::odd, {.min = 1, .max = 31, .odd = true}, Binding::specialise, "width"),
+      size("tiles", &Stepped::tiles, {.min = 1, .max = 256, .unit = "texels", .step = 64}, Binding::structure, "a size"),
+      real("epsilon", &Stepped::epsilon, {.min = 1e-6, .max = 1.0, .logarithmic = true}, Binding::uniform, "a threshold")}
+      .table();
+}
+
+std::size_t steppedFaults(const std::string& text) {
+  Problems problems;
+  Stepped stepped;
+  readObject(Json::parse(text), *steppedTable(), &stepped, {"f", ""}, problems);
+  return problems.list().size();
+}
+
+TEST(Reader, IntegersThatAreLeftOutAreFaults) {
+  for (const char* text : {R"({"odd": 4})", R"({"tiles": 100})", R"({"tiles": [64, 65]})", R"({"tiles": [63, 128]})"})
+    EXPECT_EQ(steppedFaults(text), 1U) << text;
+  for (const char* text : {R"({"odd": 31})", R"({"odd": 5.0})", R"({"tiles": 128})", R"({"tiles": [64, 256]})"})
+    EXPECT_EQ(steppedFaults(text), 0U) << text;
+}
+
+TEST(AllowedText, TellsWhichIntegersAreLeftOut) {
+  EXPECT_EQ(allowedText(*steppedTable()->find("odd")), "an integer from 1 to 31, odd");
+  EXPECT_EQ(allowedText(*steppedTable()->find("tiles")),
+            "one integer (square) or two [width, height], each from 1 to 256 texels, a multiple of 64");
+}
+
+TEST(Schema, TellsWhichIntegersAreLeftOutAndWhatIsLogarithmic) {
+  const Stepped stepped;
+  const Json schema = schemaOf(*steppedTable(), &stepped);
+  const Json& properties = schema["properties"];
+  EXPECT_EQ(properties["odd"]["not"].dump(), R"({"type":"integer","multipleOf":2})");
+  EXPECT_EQ(properties["tiles"]["multipleOf"], 64);
+  EXPECT_EQ(properties["tiles"]["items"]["multipleOf"], 64);
+  EXPECT_EQ(properties["epsilon"]["description"], "a threshold (logarithmic scale)");
+}
+
 TEST(Schema, DescribesWhatTheReaderAccepts) {
   const Thing thing;
   const Json schema = schemaOf(*thingTable(), &thing);

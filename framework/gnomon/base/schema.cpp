@@ -27,7 +27,10 @@ Json bounded(Json schema, const Range& range) {
 Json integerSchema(Json type, Range range) {
   if (!std::isfinite(range.min)) range.min = std::numeric_limits<int>::min();
   if (!std::isfinite(range.max)) range.max = std::numeric_limits<int>::max();
-  return bounded({{"type", std::move(type)}}, range);
+  Json schema = bounded({{"type", std::move(type)}}, range);
+  if (range.step > 1) schema["multipleOf"] = range.step;
+  if (range.odd) schema["not"] = {{"type", "integer"}, {"multipleOf", 2}};
+  return schema;
 }
 
 Json arrayOf(Json items, std::size_t count) {
@@ -83,7 +86,9 @@ Json typeSchema(const Field& field, const void* defaults) {
 
 Json fieldSchema(const Field& field, const void* defaults) {
   Json schema = typeSchema(field, defaults);
-  schema["description"] = field.range.unit.empty() ? field.meaning : fmt::format("{} ({})", field.meaning, field.range.unit);
+  const std::string scale = field.range.logarithmic ? "logarithmic scale" : "";
+  const std::string facts = field.range.unit + (field.range.unit.empty() || scale.empty() ? "" : ", ") + scale;
+  schema["description"] = facts.empty() ? field.meaning : fmt::format("{} ({})", field.meaning, facts);
   // The members of an object show their own defaults; a key that must be given has none.
   const bool showsDefault = !field.required && field.type != FieldType::object && field.type != FieldType::custom;
   if (showsDefault && field.find(defaults) != nullptr) schema["default"] = toJson(field, defaults);

@@ -23,8 +23,12 @@ std::string rangeText(const Range& range) {
   return text;
 }
 
-std::string eachInRange(const Range& range) {
-  const std::string text = rangeText(range);
+/// The same with the integers that are left out: "from 64 to 4096 texels, a multiple of 64".
+std::string integerText(const Range& range) {
+  return rangeText(range) + (range.step > 1 ? fmt::format(", a multiple of {}", range.step) : "") + (range.odd ? ", odd" : "");
+}
+
+std::string each(const std::string& text) {
   return text.empty() ? "" : ", each" + text;
 }
 
@@ -116,12 +120,23 @@ bool equalValues(const FieldTable& table, const void* a, const void* b) {
   return std::all_of(table.fields().begin(), table.fields().end(), [&](const Field& field) { return equalValue(field, a, b); });
 }
 
+bool allowsInteger(const Range& range, double value) {
+  const bool isInRange = range.openMin ? value > range.min : value >= range.min;
+  if (!isInRange || !(value <= range.max) || std::trunc(value) != value) return false;
+  const bool isStep = range.step <= 1 || std::fmod(value, range.step) == 0.0;
+  return isStep && (!range.odd || std::fmod(value, 2.0) != 0.0);
+}
+
+int integerStep(const Range& range) {
+  return std::max(range.step, 1) * (range.odd ? 2 : 1);
+}
+
 std::string allowedText(const Field& field) {
   switch (field.type) {
     case FieldType::boolean:
       return "true or false";
     case FieldType::integer:
-      return "an integer" + rangeText(field.range);
+      return "an integer" + integerText(field.range);
     case FieldType::real32:
     case FieldType::real64:
       return "a number" + rangeText(field.range);
@@ -130,11 +145,11 @@ std::string allowedText(const Field& field) {
     case FieldType::text:
       return "text";
     case FieldType::size:
-      return "one integer (square) or two [width, height]" + eachInRange(field.range);
+      return "one integer (square) or two [width, height]" + each(integerText(field.range));
     case FieldType::vector2:
-      return "two numbers [x, y]" + eachInRange(field.range);
+      return "two numbers [x, y]" + each(rangeText(field.range));
     case FieldType::vector3:
-      return "three numbers [x, y, z]" + eachInRange(field.range);
+      return "three numbers [x, y, z]" + each(rangeText(field.range));
     case FieldType::object:
       return fmt::format("an object with keys among {}", fmt::join(field.nested->names(), ", "));
     case FieldType::list:

@@ -49,8 +49,16 @@ struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   std::string unit = {};
-  bool openMin = false;  ///< min itself is not allowed
+  bool openMin = false;      ///< min itself is not allowed
+  int step = 0;              ///< of integers and sizes: only multiples of it are allowed; 0 or 1: all
+  bool odd = false;          ///< of integers and sizes: only odd ones are allowed
+  bool logarithmic = false;  ///< of reals above 0: a person steps by factors, not by differences
 };
+
+/// Whether an integer or one side of a size may have this value.
+bool allowsInteger(const Range& range, double value);
+/// From one allowed integer to the next: `step`, twice that where only odd ones are allowed.
+int integerStep(const Range& range);
 
 class FieldTable;
 struct CustomField;  // json.h

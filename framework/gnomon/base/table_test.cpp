@@ -101,6 +101,26 @@ TEST(TableValues, AnEmptyOptionalIsCopiedAsEmpty) {
   EXPECT_FALSE(mine.maybe.has_value());
 }
 
+TEST(Integers, AreMultiplesOfTheStep) {
+  const Range range{.min = 1, .max = 20, .step = 4};
+  for (const int allowed : {4, 8, 12, 16, 20}) EXPECT_TRUE(allowsInteger(range, allowed)) << allowed;
+  for (const double refused : {0.0, 1.0, 5.0, 10.0, 21.0, 24.0, 4.5}) EXPECT_FALSE(allowsInteger(range, refused)) << refused;
+}
+
+TEST(Integers, AreOddWhereTheyMustBe) {
+  const Range range{.min = -3, .max = 5, .odd = true};
+  for (const int allowed : {-3, -1, 1, 5}) EXPECT_TRUE(allowsInteger(range, allowed)) << allowed;
+  for (const int refused : {-5, -2, 0, 4, 7}) EXPECT_FALSE(allowsInteger(range, refused)) << refused;
+}
+
+TEST(Integers, OfBothRulesObeyBoth) {
+  const Range range{.step = 3, .odd = true};
+  EXPECT_TRUE(allowsInteger(range, 9.0));
+  EXPECT_FALSE(allowsInteger(range, 6.0));
+  EXPECT_EQ(integerStep(range), 6);
+  EXPECT_TRUE(allowsInteger(range, 9.0 + integerStep(range)));
+}
+
 TEST(TableValues, OneDifferenceIsEnough) {
   Values mine;
   const Values theirs;

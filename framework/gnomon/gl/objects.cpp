@@ -52,17 +52,42 @@ void setLabel(GLenum kind, GLuint name, const std::string& label) {
   glObjectLabel(kind, name, static_cast<GLsizei>(std::min<std::size_t>(label.size(), 255)), label.c_str());
 }
 
-TextureObject makeTexture2D(GLenum internalFormat, glm::ivec2 size, const std::string& label) {
+namespace {
+
+void requireSize(glm::ivec2 size, const std::string& label) {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
   if (size.x < 1 || size.y < 1 || size.x > limit || size.y > limit) {
     throw Error(fmt::format("texture '{}': {}x{} is outside this driver's 1..{}", label, size.x, size.y, limit));
   }
+}
+
+TextureObject newTexture(GLenum target) {
   GLuint name = 0;
-  glCreateTextures(GL_TEXTURE_2D, 1, &name);
-  TextureObject texture(name);
-  glTextureStorage2D(name, 1, internalFormat, size.x, size.y);
-  setLabel(GL_TEXTURE, name, label);
+  glCreateTextures(target, 1, &name);
+  return TextureObject(name);
+}
+
+}  // namespace
+
+TextureObject makeTexture2D(GLenum internalFormat, glm::ivec2 size, const std::string& label) {
+  requireSize(size, label);
+  TextureObject texture = newTexture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), 1, internalFormat, size.x, size.y);
+  setLabel(GL_TEXTURE, texture.name(), label);
+  return texture;
+}
+
+TextureObject makeTexture2DArray(GLenum internalFormat, glm::ivec2 size, int layers, const std::string& label) {
+  requireSize(size, label);
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &limit);
+  if (layers < 1 || layers > limit) {
+    throw Error(fmt::format("texture '{}': {} layers are outside this driver's 1..{}", label, layers, limit));
+  }
+  TextureObject texture = newTexture(GL_TEXTURE_2D_ARRAY);
+  glTextureStorage3D(texture.name(), 1, internalFormat, size.x, size.y, layers);
+  setLabel(GL_TEXTURE, texture.name(), label);
   return texture;
 }
 

@@ -1,4 +1,5 @@
-// Move-only OpenGL objects: created complete, deleted with their owner. A current context is required throughout.
+// Move-only OpenGL objects: created complete, deleted with their owner. A
+// current context is required throughout.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -67,9 +68,12 @@ using SamplerObject = Object<&detail::deleteSampler>;
 /// Names an object for debuggers; cut to what every driver takes.
 void setLabel(GLenum kind, GLuint name, const std::string& label);
 
-/// Immutable storage of one level. Throws Error beyond the driver's limit, naming it.
+/// Immutable storage of one level. Throws Error beyond the driver's limit,
+/// naming it.
 TextureObject makeTexture2D(GLenum internalFormat, glm::ivec2 size, const std::string& label);
-/// Immutable storage, writable by glNamedBufferSubData. `bytes` may be 0 (16 are taken).
+TextureObject makeTexture2DArray(GLenum internalFormat, glm::ivec2 size, int layers, const std::string& label);
+/// Immutable storage, writable by glNamedBufferSubData. `bytes` may be 0 (16
+/// are taken).
 BufferObject makeBuffer(std::size_t bytes, const void* data, const std::string& label);
 FramebufferObject makeFramebuffer(const std::string& label);
 VertexArrayObject makeVertexArray(const std::string& label);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
-#include <set>
 #include <sstream>
 
 #include "gnomon/base/error.h"
@@ -32,9 +31,67 @@ std::optional<std::string> includedName(const std::string& line) {
   return close == std::string::npos ? std::string() : line.substr(open + 1, close - open - 1);
 }
 
+bool isWordCharacter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// Decides the defences of a text, line by line.
+class DefenceSwitch {
+ public:
+  explicit DefenceSwitch(const std::set<std::string>& off) : off_(off) {}
+
+  /// The line with `(true)` or `(false)` for each GNOMON_DEFENCE(name) outside comments, whose names it adds to `met`.
+  std::string decided(const std::string& line, const std::string& where, std::set<std::string>& met) {
+    std::string result;
+    for (std::size_t i = 0; i < line.size();) {
+      if (inComment_) {
+        const std::size_t end = line.find("*/", i);
+        inComment_ = end == std::string::npos;
+        const std::size_t after = inComment_ ? line.size() : end + 2;
+        result.append(line, i, after - i);
+        i = after;
+      } else if (line.compare(i, 2, "//") == 0) {
+        result.append(line, i);
+        break;
+      } else if (line.compare(i, 2, "/*") == 0) {
+        inComment_ = true;
+        result += "/*";
+        i += 2;
+      } else if (isWordCharacter(line[i])) {
+        std::size_t end = i;
+        while (end < line.size() && isWordCharacter(line[end])) ++end;
+        const std::string word = line.substr(i, end - i);
+        i = end;
+        result += word == "GNOMON_DEFENCE" ? valueOf(line, i, where, met) : word;
+      } else {
+        result += line[i++];
+      }
+    }
+    return result;
+  }
+
+ private:
+  /// Of the name in brackets at `i`, which then stands behind them.
+  std::string valueOf(const std::string& line, std::size_t& i, const std::string& where, std::set<std::string>& met) const {
+    const std::size_t open = line.find_first_not_of(" \t", i);
+    const std::size_t close = open != std::string::npos && line[open] == '(' ? line.find(')', open) : std::string::npos;
+    const std::string name = close == std::string::npos ? "" : line.substr(open + 1, close - open - 1);
+    const bool isDefined = line.find_first_not_of(" \t") != std::string::npos && line[line.find_first_not_of(" \t")] == '#';
+    if (name.empty() || isDefined || !std::all_of(name.begin(), name.end(), isWordCharacter)) {
+      throw Error(where + ": GNOMON_DEFENCE needs one name in brackets, outside directives; the framework gives its value");
+    }
+    met.insert(name);
+    i = close + 1;
+    return off_.contains(name) ? "(false)" : "(true)";
+  }
+
+  const std::set<std::string>& off_;
+  bool inComment_ = false;
+};
+
 class Expander {
  public:
-  explicit Expander(const ShaderSources& sources) : sources_(sources) {}
+  explicit Expander(const ShaderSources& sources) : sources_(sources), defences_(sources.defencesOff) {}
 
   void expand(const std::string& name, const std::filesystem::path& besides, const std::string& from, int depth) {
     if (name.empty()) throw Error(from + ": #include needs \"file\" in quotes");
@@ -79,16 +136,18 @@ class Expander {
     std::string line;
     for (int at = 1; std::getline(lines, line); ++at) {
       const std::optional<std::string> name = includedName(line);
+      const std::string where = fmt::format("{}:{}", path.string(), at);
       if (!name) {
-        result.text += line + '\n';
+        result.text += defences_.decided(line, where, result.defences) + '\n';
       } else {
-        expand(*name, path.parent_path(), fmt::format("{}:{}", path.string(), at), depth + 1);
+        expand(*name, path.parent_path(), where, depth + 1);
         result.text += fmt::format("#line {} {}\n", at + 1, number);
       }
     }
   }
 
   const ShaderSources& sources_;
+  DefenceSwitch defences_;
   std::set<std::string> seen_;
 };
 
@@ -131,6 +190,7 @@ ProgramObject makeProgram(const ShaderSources& sources, const std::vector<Shader
   std::vector<ShaderObject> shaders;
   for (const ShaderStage& stage : stages) {
     const ExpandedShader source = expandShader(sources, stage.file, constants);
+    if (sources.defencesMet) sources.defencesMet->insert(source.defences.begin(), source.defences.end());
     const ShaderObject& shader = shaders.emplace_back(glCreateShader(stage.type));
     const char* text = source.text.c_str();
     glShaderSource(shader.name(), 1, &text, nullptr);

@@ -55,6 +55,44 @@ TEST_F(ExpandShader, FloatConstantsKeepAllTheirDigits) {  // nine give back ever
   EXPECT_THAT(text({{"F", 0.1f}}), HasSubstr("const float F = 1.000000015e-01;\n"));
 }
 
+// --- defences ---
+
+TEST_F(ExpandShader, ADefenceIsOnUnlessItsNameIsOff) {
+  file("first/main.frag", "if (GNOMON_DEFENCE(clamp) && GNOMON_DEFENCE( bias )) d = 0.0;\n");
+  EXPECT_THAT(error(), HasSubstr("main.frag:1"));  // one name, and nothing else
+  file("first/main.frag", "if (GNOMON_DEFENCE(clamp) && GNOMON_DEFENCE(bias)) d = 0.0;\n");
+  EXPECT_THAT(text(), HasSubstr("if ((true) && (true)) d = 0.0;\n"));
+  sources_.defencesOff = {"bias"};
+  EXPECT_THAT(text(), HasSubstr("if ((true) && (false)) d = 0.0;\n"));
+}
+
+TEST_F(ExpandShader, NamesOfDefencesAreThoseOfItsIncludesToo) {
+  file("first/main.frag", "#include \"b.glsl\"\nbool a = GNOMON_DEFENCE(outer);\n");
+  file("first/b.glsl", "bool b = GNOMON_DEFENCE(inner);\n");
+  EXPECT_THAT(expand().defences, ElementsAre("inner", "outer"));
+}
+
+TEST_F(ExpandShader, ADefenceInACommentIsNone) {
+  file("first/main.frag", "// GNOMON_DEFENCE(a)\n/* GNOMON_DEFENCE(b)\n GNOMON_DEFENCE */ bool c = GNOMON_DEFENCE(c);\n");
+  const ExpandedShader shader = expand();
+  EXPECT_THAT(shader.defences, ElementsAre("c"));
+  EXPECT_THAT(shader.text, HasSubstr("// GNOMON_DEFENCE(a)\n/* GNOMON_DEFENCE(b)\n GNOMON_DEFENCE */ bool c = (true);\n"));
+}
+
+TEST_F(ExpandShader, LongerWordsAreNoDefence) {
+  file("first/main.frag", "bool a = MY_GNOMON_DEFENCE(x), b = GNOMON_DEFENCES(y);\n");
+  EXPECT_THAT(text(), HasSubstr("bool a = MY_GNOMON_DEFENCE(x), b = GNOMON_DEFENCES(y);\n"));
+}
+
+TEST_F(ExpandShader, NoMacroDecidesADefence) {
+  for (const char* line : {"#define GNOMON_DEFENCE(name) true", "#undef GNOMON_DEFENCE", "#if GNOMON_DEFENCE(clamp)",
+                           "GNOMON_DEFENCE", "GNOMON_DEFENCE()", "GNOMON_DEFENCE(a b)", "GNOMON_DEFENCE(a"}) {
+    file("first/main.frag", "\n" + std::string(line) + "\n");
+    EXPECT_THAT(error(), AllOf(HasSubstr(path("first/main.frag") + ":2: "), HasSubstr("GNOMON_DEFENCE needs one name")))
+        << line;
+  }
+}
+
 TEST_F(ExpandShader, AnIncludeIsReplacedAndLinesCountOnBehindIt) {
   file("first/main.frag", "a\n#include \"b.glsl\"\nc\n");
   file("first/b.glsl", "b\n");

@@ -1,4 +1,4 @@
-// Declaration: handles, programs and what they use, pruning, storage.
+// Declaration: handles, passes, and what makes no sense.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,98 +8,201 @@
 
 namespace gnomon {
 
+namespace {
+
+/// What a geometry shader may be invoked for, at least (OpenGL 4.5,
+/// MAX_GEOMETRY_SHADER_INVOCATIONS).
+constexpr int kMostScreenLayers = 32;
+
+std::vector<gl::Constant> constantsOf(const std::vector<Constant>& constants) {
+  std::vector<gl::Constant> all;
+  for (const Constant& constant : constants) all.push_back({constant.name, constant.value});
+  return all;
+}
+
+std::string describe(const TextureInfo& info) {
+  const std::string layers = info.layers > 0 ? fmt::format(" x {} layers", info.layers) : "";
+  return fmt::format("{}x{}{} {}", info.size.x, info.size.y, layers, formatFacts(info.format).name);
+}
+
+bool sameStorage(const TextureInfo& a, const TextureInfo& b) {
+  return a.size == b.size && a.format == b.format && a.layers == b.layers;
+}
+
+}  // namespace
+
 class GraphDeclaration final : public GraphBuilder {
  public:
   explicit GraphDeclaration(Graph::State& state) : s_(state) {}
 
-  Texture texture(const std::string& name, const TextureInfo& info) override { return addTexture(name, info, kNoWriter); }
+  Texture texture(const std::string& name, const TextureInfo& info) override { return addTexture(name, info); }
+
+  Texture history(const std::string& name, const TextureInfo& info, const glm::vec4& reset) override {
+    if (info.transient) throw Error(fmt::format("history '{}' is transient, so that nothing of it would be left", name));
+    const Texture texture = addTexture(name, info);
+    s_.at(texture).isHistory = true;
+    s_.at(texture).reset = reset;
+    return texture;
+  }
+
+  void remember(Texture history, Texture current) override {
+    const std::string name = s_.texture(checked(history, "remember")).name;
+    PassNode& node = addPass(name);
+    if (!s_.at(history).isHistory) throw Error(fmt::format("'{}' is remembered, and was not declared by history", name));
+    if (s_.at(history).writers[0] >= 0) throw Error(fmt::format("history '{}' is of two textures", name));
+    read(node, current);
+    const TextureInfo& from = s_.texture(current).info;
+    const TextureInfo& to = s_.texture(history).info;
+    if (!sameStorage(from, to) || from.transient) {
+      throw Error(fmt::format("history '{}' is {}, and cannot hold '{}', {}{}", name, describe(to), s_.texture(current).name,
+                              describe(from), from.transient ? ", transient" : ""));
+    }
+    std::fill(s_.at(history).writers.begin(), s_.at(history).writers.end(), static_cast<int>(passIndex()));
+    node.writes = {{history, -1}};
+    node.kind = HistoryPass{history, current};
+    useProgram(node, {});
+  }
 
   Buffer buffer(const std::string& name, std::size_t bytes) override {
     auto resource = std::make_shared<BufferResource>();
     resource->name = name;
     resource->bytes = bytes;
-    resource->contents.assign(bytes, std::byte{0});
-    resource->object = gl::makeBuffer(bytes, resource->contents.data(), s_.name + "/" + name);
-    s_.buffers.push_back(std::move(resource));
-    s_.bufferImported.push_back(false);
-    return {static_cast<int>(s_.buffers.size()) - 1};
+    resource->object = gl::makeBuffer(bytes, nullptr, s_.name + "/" + name);
+    glClearNamedBufferData(resource->object.name(), GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr);
+    return addBuffer({std::move(resource), false, -1});
   }
 
   DrawList drawList(const std::string& name) override {
-    DrawListState& list = s_.drawLists.emplace_back();
-    list.name = name;
-    list.records = std::make_shared<BufferResource>();
-    list.records->name = name;
+    auto records = std::make_shared<BufferResource>();
+    records->name = name;
+    const Buffer buffer = addBuffer({std::move(records), false, -1});
+    s_.drawLists.push_back({name, buffer, std::make_shared<DrawStorage>()});
     return {static_cast<int>(s_.drawLists.size()) - 1};
   }
 
-  void provide(const std::string& name, Texture texture) override { s_.providedTextures[name] = texture; }
-  void provide(const std::string& name, Buffer buffer) override { s_.providedBuffers[name] = buffer; }
-  void include(const std::string& name, const std::string& text) override { s_.sources.generated[name] = text; }
-  void constant(const Constant& constant) override { s_.constants.push_back({constant.name, constant.value}); }
+  void provide(const std::string& name, Texture texture) override { context().textures[name] = texture; }
+  void provide(const std::string& name, Buffer buffer) override { context().buffers[name] = buffer; }
+  void include(const std::string& name, const std::string& text) override { context().sources.generated[name] = text; }
+  void constant(const Constant& constant) override { context().constants.push_back({constant.name, constant.value}); }
 
   Texture fullscreen(const std::string& name, const FullscreenPass& pass) override {
     PassNode& node = addPass(name);
     node.size = pass.size.value_or(s_.outputSize);
-    const Texture target = addTexture(name, {node.size, pass.format}, passIndex());
-    node.writes = {target};
+    requireColour(node, name, pass.format);
+    const Texture target = addTexture(name, {node.size, pass.format, pass.layers, pass.transient});
+    if (pass.from) readAs(node, *pass.from, s_.texture(target).info);
+    if (pass.stencil) requireStencil(node, pass.stencil->texture);
+    write(node, {target, -1});
     node.kind = pass;
-    bind(node, {{GL_VERTEX_SHADER, "gnomon/fullscreen.vert"}, {GL_FRAGMENT_SHADER, pass.shader}}, pass.reads, pass.buffers,
-         pass.constants);
+    std::vector<gl::ShaderStage> stages{{GL_VERTEX_SHADER, "gnomon/fullscreen.vert"}};
+    std::vector<Constant> constants = pass.constants;
+    if (pass.layers > kMostScreenLayers) {
+      throw Error(
+          fmt::format("pass '{}' has {} layers; a full-screen pass has at most {}", name, pass.layers, kMostScreenLayers));
+    }
+    if (pass.layers > 0) {
+      stages.push_back({GL_GEOMETRY_SHADER, "gnomon/fullscreen_layers.geom"});
+      constants.push_back({"SCREEN_LAYERS", pass.layers});
+    }
+    stages.push_back({GL_FRAGMENT_SHADER, pass.shader});
+    give(node, {s_.context, std::move(stages), constantsOf(constants), pass.reads, {}, pass.buffers, {}});
     return target;
   }
 
   void raster(const std::string& name, const RasterPass& pass) override {
     PassNode& node = addPass(name);
-    node.inputs = {Input::geometry};
-    for (const Texture colour : pass.colours) addWrite(node, colour);
-    if (pass.depth) addWrite(node, *pass.depth);
-    if (node.writes.empty()) throw Error(fmt::format("pass '{}' writes nothing", name));
-    node.size = infoOf(node.writes[0]).size;
-    for (const Texture target : node.writes) {
-      const TextureInfo& info = infoOf(target);
-      if (info.size == node.size) continue;
-      throw Error(fmt::format("pass '{}': its targets differ in size: '{}' is {}x{}, '{}' {}x{}", name, nameOf(node.writes[0]),
-                              node.size.x, node.size.y, nameOf(target), info.size.x, info.size.y));
+    const int layer = pass.layer.value_or(-1);
+    if (pass.vertices) {
+      if (pass.draws || pass.indirect) throw Error(fmt::format("pass '{}' draws both the scene and vertices of its own", name));
+      if (pass.vertices->indirect) readIndirect(node, *pass.vertices->indirect, 16);
+    } else {
+      node.inputs = {Input::geometry};
+      node.ownBuffers.push_back(recordsOf(pass.draws, name));  // the first: DrawRecords
+      if (pass.indirect) readIndirect(node, *pass.indirect, sizeof(DrawCommand));
     }
+    for (const Texture colour : pass.colours) {
+      requireColour(node, s_.texture(checked(colour, name)).name, s_.texture(colour).info.format);
+      write(node, {colour, layer});
+    }
+    if (pass.depth) {
+      requireDepth(node, *pass.depth);
+      write(node, {*pass.depth, layer});
+    }
+    std::vector<Texture> together;
+    for (const Target& target : node.writes) together.push_back(target.texture);
+    if (pass.depthRead) {
+      if (pass.depth) throw Error(fmt::format("pass '{}' has both `depth` and `depthRead`; give one", name));
+      requireDepth(node, *pass.depthRead);
+      read(node, *pass.depthRead);
+      together.push_back(*pass.depthRead);
+    }
+    if (node.writes.empty()) throw Error(fmt::format("pass '{}' writes nothing", name));
+    requireOneSize(node, together, pass);
+    if (pass.depthFrom) {
+      if (!pass.depth || pass.layer) {
+        throw Error(fmt::format("pass '{}': `depthFrom` needs a `depth` whose layers are all drawn", name));
+      }
+      readAs(node, *pass.depthFrom, s_.texture(*pass.depth).info);
+    }
+    if (pass.stencil && !pass.depth) throw Error(fmt::format("pass '{}' has a stencil state and no `depth`", name));
+    if (pass.stencil) requireStencilFormat(node, *pass.depth);
+    writeStorage(node, pass.writes);
     node.kind = pass;
-    node.bufferReads.push_back(recordsOf(pass.draws, name));
     std::vector<gl::ShaderStage> stages{{GL_VERTEX_SHADER, pass.vertex}};
+    if (!pass.geometry.empty()) stages.push_back({GL_GEOMETRY_SHADER, pass.geometry});
     if (!pass.fragment.empty()) stages.push_back({GL_FRAGMENT_SHADER, pass.fragment});
-    bind(node, stages, pass.reads, pass.buffers, pass.constants);
+    give(node, {s_.context, std::move(stages), constantsOf(pass.constants), pass.reads, {}, pass.buffers, pass.writes});
+  }
+
+  void compute(const std::string& name, const ComputePass& pass) override {
+    PassNode& node = addPass(name);
+    for (const NamedTexture& image : pass.images) {
+      requireColour(node, s_.texture(checked(image.texture, name)).name, s_.texture(image.texture).info.format);
+      write(node, {image.texture, -1});
+    }
+    writeStorage(node, pass.writes);
+    if (node.writes.empty() && node.bufferWrites.empty()) throw Error(fmt::format("pass '{}' writes nothing", name));
+    if (pass.indirect) readIndirect(node, *pass.indirect, 12);
+    node.kind = pass;
+    give(node, {s_.context,
+                {{GL_COMPUTE_SHADER, pass.shader}},
+                constantsOf(pass.constants),
+                pass.reads,
+                pass.images,
+                pass.buffers,
+                pass.writes});
   }
 
   void cpu(const std::string& name, const CpuPass& pass) override {
     PassNode& node = addPass(name);
     node.inputs = pass.inputs;
-    for (const Texture texture : pass.reads) addRead(node, texture);
-    for (const Buffer buffer : pass.after) node.bufferReads.push_back(s_.buffers[checked(buffer, name)]);
-    for (const Texture texture : pass.writes) addWrite(node, texture);
-    for (const Buffer buffer : pass.buffers) {
-      const std::size_t i = checked(buffer, name);
-      if (s_.bufferImported[i])
-        throw Error(fmt::format("pass '{}': buffer '{}' belongs to another graph", name, s_.buffers[i]->name));
-      addWrite(node, s_.buffers[i]);
-    }
-    for (const DrawList list : pass.draws) addWrite(node, recordsOf(list, name));
+    for (const Texture texture : pass.reads) read(node, texture);
+    for (const Buffer buffer : pass.after) node.ownBuffers.push_back(checked(buffer, name));
+    for (const Texture texture : pass.writes) write(node, {texture, -1});
+    for (const Buffer buffer : pass.buffers) write(node, checked(buffer, name));
+    for (const DrawList list : pass.draws) write(node, recordsOf(list, name));
     node.kind = pass;
+    useProgram(node, {});
   }
 
   Facts& facts() override { return s_.facts; }
 
   Texture import(const std::string& /*name*/, const std::shared_ptr<TextureResource>& resource) override {
-    s_.textures.push_back(resource);
-    s_.writer.push_back(kImported);
+    s_.textures.push_back({.resource = resource, .imported = true});
     return {static_cast<int>(s_.textures.size()) - 1};
   }
   Buffer import(const std::string& /*name*/, const std::shared_ptr<BufferResource>& resource) override {
-    s_.buffers.push_back(resource);
-    s_.bufferImported.push_back(true);
-    return {static_cast<int>(s_.buffers.size()) - 1};
+    return addBuffer({resource, true, -1});
   }
 
  private:
-  int passIndex() const { return static_cast<int>(s_.passes.size()) - 1; }
+  std::size_t passIndex() const { return s_.passes.size() - 1; }
+
+  /// What later shaders are declared in; earlier ones keep theirs.
+  ShaderContext& context() {
+    if (s_.context.use_count() > 1) s_.context = std::make_shared<ShaderContext>(*s_.context);
+    return *s_.context;
+  }
 
   PassNode& addPass(const std::string& name) {
     if (s_.compiled) throw Error(fmt::format("pass '{}' is declared after the graph was compiled", name));
@@ -107,277 +210,182 @@ class GraphDeclaration final : public GraphBuilder {
     return s_.passes.back();
   }
 
-  Texture addTexture(const std::string& name, const TextureInfo& info, int writer) {
+  Texture addTexture(const std::string& name, const TextureInfo& info) {
     auto resource = std::make_shared<TextureResource>();
     resource->name = name;
     resource->info = info;
-    s_.textures.push_back(std::move(resource));
-    s_.writer.push_back(writer);
+    s_.textures.push_back(
+        {.resource = std::move(resource), .writers = std::vector<int>(static_cast<std::size_t>(std::max(info.layers, 1)), -1)});
     return {static_cast<int>(s_.textures.size()) - 1};
   }
 
-  std::size_t checked(Texture texture, const std::string& pass) const {
+  Buffer addBuffer(BufferSlot slot) {
+    s_.buffers.push_back(std::move(slot));
+    return {static_cast<int>(s_.buffers.size()) - 1};
+  }
+
+  Texture checked(Texture texture, const std::string& pass) const {
     if (texture.id < 0 || static_cast<std::size_t>(texture.id) >= s_.textures.size()) {
       throw Error(fmt::format("pass '{}' uses a texture that was never declared", pass));
     }
-    return static_cast<std::size_t>(texture.id);
+    return texture;
   }
-  std::size_t checked(Buffer buffer, const std::string& pass) const {
+  Buffer checked(Buffer buffer, const std::string& pass) const {
     if (buffer.id < 0 || static_cast<std::size_t>(buffer.id) >= s_.buffers.size()) {
       throw Error(fmt::format("pass '{}' uses a buffer that was never declared", pass));
     }
-    return static_cast<std::size_t>(buffer.id);
+    return buffer;
   }
-  const std::shared_ptr<BufferResource>& recordsOf(DrawList list, const std::string& pass) const {
+  Buffer recordsOf(DrawList list, const std::string& pass) const {
     if (list.id < 0 || static_cast<std::size_t>(list.id) >= s_.drawLists.size()) {
       throw Error(fmt::format("pass '{}' uses a draw list that was never declared", pass));
     }
     return s_.drawLists[static_cast<std::size_t>(list.id)].records;
   }
-  const std::string& nameOf(Texture texture) const { return s_.textures[static_cast<std::size_t>(texture.id)]->name; }
-  const TextureInfo& infoOf(Texture texture) const { return s_.textures[static_cast<std::size_t>(texture.id)]->info; }
 
-  void addWrite(PassNode& node, Texture texture) {
-    const std::size_t i = checked(texture, node.name);
-    if (s_.writer[i] == kImported) {
-      throw Error(fmt::format("pass '{}': texture '{}' belongs to another graph", node.name, s_.textures[i]->name));
-    }
-    if (s_.writer[i] != kNoWriter)
-      throw Error(fmt::format("pass '{}': texture '{}' has a writer already", node.name, s_.textures[i]->name));
-    s_.writer[i] = passIndex();
-    node.writes.push_back(texture);
+  static void requireColour(const PassNode& node, const std::string& target, Format format) {
+    if (!formatFacts(format).depth) return;
+    throw Error(
+        fmt::format("pass '{}': '{}' is given as colour or image and "
+                    "has the depth format {}",
+                    node.name, target, formatFacts(format).name));
+  }
+  void requireDepth(const PassNode& node, Texture texture) const {
+    const TextureResource& resource = s_.texture(checked(texture, node.name));
+    if (formatFacts(resource.info.format).depth) return;
+    throw Error(
+        fmt::format("pass '{}': '{}' is given as depth and has format "
+                    "{}; depth formats are d16, d24, d32f, d32f_s8",
+                    node.name, resource.name, formatFacts(resource.info.format).name));
+  }
+  void requireStencilFormat(const PassNode& node, Texture texture) const {
+    const TextureResource& resource = s_.texture(checked(texture, node.name));
+    if (resource.info.format == Format::d32f_s8) return;
+    throw Error(
+        fmt::format("pass '{}': '{}' is given as stencil and has "
+                    "format {}; it must be d32f_s8",
+                    node.name, resource.name, formatFacts(resource.info.format).name));
+  }
+  void requireStencil(PassNode& node, Texture texture) {
+    requireStencilFormat(node, texture);
+    read(node, texture);
+    if (s_.texture(texture).info.size == node.size) return;
+    throw Error(fmt::format("pass '{}' is {}x{}, the stencil that it tests, '{}', is {}", node.name, node.size.x, node.size.y,
+                            s_.texture(texture).name, describe(s_.texture(texture).info)));
   }
 
-  /// Passes run in the order of their declaration: whoever reads the buffer must come later.
-  void addWrite(PassNode& node, const std::shared_ptr<BufferResource>& buffer) {
-    const auto has = [&](const auto& list) { return std::find(list.begin(), list.end(), buffer) != list.end(); };
-    for (const PassNode& other : s_.passes) {
-      if (has(other.bufferWrites)) {
-        throw Error(fmt::format("pass '{}': buffer '{}' has a writer already, '{}'", node.name, buffer->name, other.name));
-      }
-      if (has(other.bufferReads)) {
-        throw Error(fmt::format("pass '{}' writes buffer '{}' after '{}' has read it", node.name, buffer->name, other.name));
-      }
+  /// Targets of one pass have one size; layers where all are drawn, and then
+  /// somebody chooses among them.
+  void requireOneSize(PassNode& node, const std::vector<Texture>& targets, const RasterPass& pass) const {
+    const TextureResource& first = s_.texture(targets[0]);
+    node.size = first.info.size;
+    for (const Texture target : targets) {
+      const TextureResource& other = s_.texture(target);
+      if (other.info.size == node.size && (pass.layer || other.info.layers == first.info.layers)) continue;
+      throw Error(fmt::format("pass '{}': its targets differ in size: '{}' is {}, '{}' {}", node.name, first.name,
+                              describe(first.info), other.name, describe(other.info)));
     }
+    if (first.info.layers > 0 && !pass.layer && pass.geometry.empty()) {
+      throw Error(
+          fmt::format("pass '{}': its target '{}' has layers; give `layer`, or "
+                      "a geometry shader that sets gl_Layer",
+                      node.name, first.name));
+    }
+  }
+
+  void write(PassNode& node, const Target& target) {
+    TextureSlot& slot = s_.at(checked(target.texture, node.name));
+    const std::string& name = slot.resource->name;
+    if (slot.imported) throw Error(fmt::format("pass '{}': texture '{}' belongs to another graph", node.name, name));
+    if (slot.isHistory) throw Error(fmt::format("pass '{}': '{}' is a history; only `remember` fills it", node.name, name));
+    const int layers = slot.resource->info.layers;
+    if (target.layer >= 0 && target.layer >= layers) {
+      throw Error(fmt::format("pass '{}' draws layer {} of '{}', which has {}", node.name, target.layer, name, layers));
+    }
+    for (std::size_t i = 0; i < slot.writers.size(); ++i) {
+      if (target.layer >= 0 && static_cast<std::size_t>(target.layer) != i) continue;
+      if (slot.writers[i] >= 0) {
+        throw Error(fmt::format("pass '{}': texture '{}' has a writer already, '{}'", node.name, name,
+                                s_.passes[static_cast<std::size_t>(slot.writers[i])].name));
+      }
+      slot.writers[i] = static_cast<int>(passIndex());
+    }
+    node.writes.push_back(target);
+  }
+
+  /// Passes run in the order of their declaration: whoever reads the buffer
+  /// must come later.
+  void write(PassNode& node, Buffer buffer) {
+    BufferSlot& slot = s_.at(buffer);
+    if (slot.imported) {
+      throw Error(fmt::format("pass '{}': buffer '{}' belongs to another graph", node.name, slot.resource->name));
+    }
+    if (slot.writer >= 0) {
+      throw Error(fmt::format("pass '{}': buffer '{}' has a writer already, '{}'", node.name, slot.resource->name,
+                              s_.passes[static_cast<std::size_t>(slot.writer)].name));
+    }
+    for (const PassNode& other : s_.passes) {
+      const auto& reads = &other == &node ? other.ownBuffers : other.bufferReads;
+      if (std::find(reads.begin(), reads.end(), buffer) == reads.end()) continue;
+      throw Error(
+          fmt::format("pass '{}' writes buffer '{}' after '{}' has read it", node.name, slot.resource->name, other.name));
+    }
+    slot.writer = static_cast<int>(passIndex());
     node.bufferWrites.push_back(buffer);
   }
 
-  void addRead(PassNode& node, Texture texture) {
-    const std::size_t i = checked(texture, node.name);
-    if (s_.writer[i] == kNoWriter)
-      throw Error(fmt::format("pass '{}' reads texture '{}' before any pass writes it", node.name, s_.textures[i]->name));
-    if (s_.writer[i] == passIndex())
-      throw Error(fmt::format("pass '{}' reads its own target '{}'", node.name, s_.textures[i]->name));
-    node.textureReads.push_back(s_.textures[i]);
+  void writeStorage(PassNode& node, const std::vector<NamedBuffer>& writes) {
+    for (const NamedBuffer& each : writes) write(node, checked(each.buffer, node.name));
   }
 
-  /// A uniform block in a standard layout is active even if nothing of it is used: ask who refers to it. (Not so for storage
-  /// blocks: Mesa 22.3 says of every one that nobody does.)
-  static bool isReferenced(GLuint program, GLuint uniformBlock) {
-    const std::array<GLenum, 2> users{GL_REFERENCED_BY_VERTEX_SHADER, GL_REFERENCED_BY_FRAGMENT_SHADER};
-    std::array<GLint, 2> used{};
-    glGetProgramResourceiv(program, GL_UNIFORM_BLOCK, uniformBlock, 2, users.data(), 2, nullptr, used.data());
-    return used[0] != 0 || used[1] != 0;
+  void read(PassNode& node, Texture texture) {
+    requireWritten(s_, node, passIndex(), texture);
+    node.ownTextures.push_back(texture);
   }
 
-  /// Compiles, then finds by introspection which samplers and blocks the program really uses: listed ones first, then
-  /// provided ones. Only those are reads, so that an unused include makes no dependency.
-  void bind(PassNode& node, const std::vector<gl::ShaderStage>& stages, const std::vector<NamedTexture>& reads,
-            const std::vector<NamedBuffer>& buffers, const std::vector<Constant>& constants) {
-    std::vector<gl::Constant> all = s_.constants;
-    for (const Constant& constant : constants) all.push_back({constant.name, constant.value});
-    try {
-      node.bound.program = gl::makeProgram(s_.sources, stages, all, s_.name + "/" + node.name);
-    } catch (const Error& error) {
-      throw Error(fmt::format("pass '{}': {}", node.name, error.what()));
+  /// Reads what something of the pass begins as a copy of.
+  void readAs(PassNode& node, Texture from, const TextureInfo& to) {
+    read(node, from);
+    if (sameStorage(s_.texture(from).info, to)) return;
+    throw Error(
+        fmt::format("pass '{}' begins with a copy of '{}', {}, into "
+                    "{}; they must be the same",
+                    node.name, s_.texture(from).name, describe(s_.texture(from).info), describe(to)));
+  }
+
+  void readIndirect(PassNode& node, const Indirect& indirect, std::size_t commandBytes) {
+    const BufferResource& buffer = s_.buffer(checked(indirect.buffer, node.name));
+    const std::size_t end = indirect.offset + static_cast<std::size_t>(std::max(indirect.commands, 0)) * commandBytes;
+    if (indirect.commands < 1 || indirect.offset % 4 != 0 || end > buffer.bytes) {
+      throw Error(
+          fmt::format("pass '{}': {} commands at byte {} do not lie in "
+                      "buffer '{}' of {} bytes",
+                      node.name, indirect.commands, indirect.offset, buffer.name, buffer.bytes));
     }
-    bindSamplers(node, reads);
-    bindBlocks(node, buffers, GL_UNIFORM_BLOCK, GL_UNIFORM_BUFFER);
-    bindBlocks(node, buffers, GL_SHADER_STORAGE_BLOCK, GL_SHADER_STORAGE_BUFFER);
+    node.ownBuffers.push_back(indirect.buffer);
   }
 
-  void bindSamplers(PassNode& node, const std::vector<NamedTexture>& reads) {
-    const GLuint program = node.bound.program.name();
-    GLint count = 0;
-    glGetProgramInterfaceiv(program, GL_UNIFORM, GL_ACTIVE_RESOURCES, &count);
-    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
-      const std::array<GLenum, 3> wanted{GL_TYPE, GL_LOCATION, GL_BLOCK_INDEX};
-      std::array<GLint, 3> got{};
-      glGetProgramResourceiv(program, GL_UNIFORM, i, 3, wanted.data(), 3, nullptr, got.data());
-      if (got[2] != -1 || got[1] < 0) continue;
-      std::array<char, 256> text{};
-      glGetProgramResourceName(program, GL_UNIFORM, i, static_cast<GLsizei>(text.size()), nullptr, text.data());
-      const std::string name(text.data());
-      const auto listed = std::find_if(reads.begin(), reads.end(), [&](const NamedTexture& r) { return r.name == name; });
-      Texture texture;
-      if (listed != reads.end()) {
-        texture = listed->texture;
-      } else if (const auto provided = s_.providedTextures.find(name); provided != s_.providedTextures.end()) {
-        texture = provided->second;
-      } else {
-        throw Error(fmt::format("pass '{}': nothing is given for the shader's uniform '{}'", node.name, name));
-      }
-      addRead(node, texture);
-      const auto unit = static_cast<GLuint>(node.bound.textures.size());
-      glProgramUniform1i(program, got[1], static_cast<GLint>(unit));
-      node.bound.textures.emplace_back(unit, node.textureReads.back());
-    }
-  }
-
-  void bindBlocks(PassNode& node, const std::vector<NamedBuffer>& buffers, GLenum interface, GLenum target) {
-    const GLuint program = node.bound.program.name();
-    GLint count = 0;
-    glGetProgramInterfaceiv(program, interface, GL_ACTIVE_RESOURCES, &count);
-    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
-      if (target == GL_UNIFORM_BUFFER && !isReferenced(program, i)) continue;
-      std::array<char, 256> text{};
-      glGetProgramResourceName(program, interface, i, static_cast<GLsizei>(text.size()), nullptr, text.data());
-      const std::string name(text.data());
-      if (target == GL_UNIFORM_BUFFER) {
-        glUniformBlockBinding(program, i, i);
-      } else {
-        glShaderStorageBlockBinding(program, i, i);
-      }
-      if (name == "DrawRecords" || name == "TriangleNormals") {  // the graph's own: bound when the pass draws
-        if (!std::holds_alternative<RasterPass>(node.kind)) {
-          throw Error(fmt::format("pass '{}': the shader's block '{}' is of passes that draw", node.name, name));
-        }
-        node.bound.blocks.push_back({target, i, name == "DrawRecords" ? node.bufferReads.front() : nullptr});
-        continue;
-      }
-      const auto listed = std::find_if(buffers.begin(), buffers.end(), [&](const NamedBuffer& b) { return b.name == name; });
-      Buffer buffer;
-      if (listed != buffers.end()) {
-        buffer = listed->buffer;
-      } else if (const auto provided = s_.providedBuffers.find(name); provided != s_.providedBuffers.end()) {
-        buffer = provided->second;
-      } else {
-        throw Error(fmt::format("pass '{}': nothing is given for the shader's block '{}'", node.name, name));
-      }
-      const auto& resource = s_.buffers[checked(buffer, node.name)];
-      node.bufferReads.push_back(resource);
-      node.bound.blocks.push_back({target, i, resource});
-    }
+  void give(PassNode& node, Recipe recipe) {
+    node.recipe = std::move(recipe);
+    useProgram(node, bindProgram(s_, node, passIndex()));
   }
 
   Graph::State& s_;
 };
 
-Graph::Graph(std::string name, glm::ivec2 outputSize, gl::ShaderSources sources) : state_(std::make_unique<State>()) {
+Graph::Graph(std::string name, glm::ivec2 outputSize, gl::ShaderSources sources, GraphShares shares)
+    : state_(std::make_unique<State>()) {
   state_->name = std::move(name);
   state_->outputSize = outputSize;
-  state_->sources = std::move(sources);
+  state_->shares = std::move(shares);
+  if (!state_->shares.programs) state_->shares.programs = std::make_shared<gl::ProgramCache>();
+  state_->context = std::make_shared<ShaderContext>();
+  state_->context->sources = std::move(sources);
   state_->emptyVertexArray = gl::makeVertexArray("full screen");
   state_->nearest = gl::makeSampler(GL_NEAREST);
   state_->builder = std::make_unique<GraphDeclaration>(*state_);
 }
 
 Graph::~Graph() = default;
-
-GraphBuilder& Graph::builder() {
-  return *state_->builder;
-}
-
-void Graph::compile(std::span<const Texture> outputs) {
-  State& s = *state_;
-  if (s.compiled) throw Error("graph '" + s.name + "' is compiled already");
-  // Backwards from the outputs: a pass is kept if something kept reads what it writes.
-  std::vector<const void*> wanted;
-  for (const Texture texture : outputs) {
-    const auto i = static_cast<std::size_t>(texture.id);
-    if (texture.id < 0 || i >= s.textures.size()) throw Error("graph '" + s.name + "': an output was never declared");
-    if (s.writer[i] == kNoWriter)
-      throw Error(fmt::format("graph '{}': nothing writes its output '{}'", s.name, s.textures[i]->name));
-    wanted.push_back(s.textures[i].get());
-  }
-  const auto isWanted = [&](const void* resource) { return std::find(wanted.begin(), wanted.end(), resource) != wanted.end(); };
-  for (auto node = s.passes.rbegin(); node != s.passes.rend(); ++node) {
-    node->kept =
-        std::any_of(node->writes.begin(), node->writes.end(),
-                    [&](Texture t) { return isWanted(s.textures[static_cast<std::size_t>(t.id)].get()); }) ||
-        std::any_of(node->bufferWrites.begin(), node->bufferWrites.end(), [&](const auto& b) { return isWanted(b.get()); });
-    if (!node->kept) continue;
-    for (const auto& read : node->textureReads) wanted.push_back(read.get());
-    for (const auto& read : node->bufferReads) wanted.push_back(read.get());
-  }
-
-  for (PassNode& node : s.passes) {
-    if (!node.kept) continue;
-    for (const Texture texture : node.writes) {
-      TextureResource& resource = *s.textures[static_cast<std::size_t>(texture.id)];
-      resource.object =
-          gl::makeTexture2D(formatFacts(resource.info.format).internalFormat, resource.info.size, s.name + "/" + resource.name);
-    }
-    if (std::holds_alternative<CpuPass>(node.kind)) continue;
-    node.framebuffer = gl::makeFramebuffer(s.name + "/" + node.name);
-    std::vector<GLenum> draws;
-    for (const Texture texture : node.writes) {
-      const TextureResource& resource = *s.textures[static_cast<std::size_t>(texture.id)];
-      const bool depth = formatFacts(resource.info.format).depth;
-      const GLenum attachment = resource.info.format == Format::d32f_s8 ? GL_DEPTH_STENCIL_ATTACHMENT
-                                : depth                                 ? GL_DEPTH_ATTACHMENT
-                                        : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(draws.size());
-      glNamedFramebufferTexture(node.framebuffer.name(), attachment, resource.object.name(), 0);
-      if (!depth) draws.push_back(attachment);
-    }
-    if (draws.empty()) draws.push_back(GL_NONE);
-    glNamedFramebufferDrawBuffers(node.framebuffer.name(), static_cast<GLsizei>(draws.size()), draws.data());
-    const GLenum status = glCheckNamedFramebufferStatus(node.framebuffer.name(), GL_FRAMEBUFFER);
-    if (status != GL_FRAMEBUFFER_COMPLETE) {
-      throw Error(fmt::format("pass '{}': its targets are not a complete framebuffer here (0x{:04x})", node.name, status));
-    }
-  }
-  s.compiled = true;
-}
-
-const Facts& Graph::facts() const {
-  return state_->facts;
-}
-
-std::shared_ptr<TextureResource> Graph::resource(Texture texture) const {
-  if (texture.id < 0 || static_cast<std::size_t>(texture.id) >= state_->textures.size()) {
-    throw Error("graph '" + state_->name + "': a texture was never declared");
-  }
-  return state_->textures[static_cast<std::size_t>(texture.id)];
-}
-std::shared_ptr<BufferResource> Graph::resource(Buffer buffer) const {
-  return state_->buffers.at(static_cast<std::size_t>(buffer.id));
-}
-
-std::size_t Graph::memoryBytes() const {
-  std::size_t total = 0;
-  for (std::size_t i = 0; i < state_->textures.size(); ++i) {
-    const TextureResource& t = *state_->textures[i];
-    if (state_->writer[i] == kImported || !t.object) continue;
-    total += static_cast<std::size_t>(t.info.size.x) * static_cast<std::size_t>(t.info.size.y) *
-             static_cast<std::size_t>(formatFacts(t.info.format).bytes);
-  }
-  for (std::size_t i = 0; i < state_->buffers.size(); ++i) {
-    if (!state_->bufferImported[i]) total += state_->buffers[i]->bytes;
-  }
-  for (const DrawListState& list : state_->drawLists) total += list.records->bytes + list.commandCapacity * sizeof(DrawCommand);
-  return total;
-}
-
-std::vector<std::string> Graph::passNames() const {
-  std::vector<std::string> names;
-  for (const PassNode& node : state_->passes) {
-    if (node.kept) names.push_back(node.name);
-  }
-  return names;
-}
-
-bool Graph::hasCpuPasses() const {
-  return std::any_of(state_->passes.begin(), state_->passes.end(),
-                     [](const PassNode& node) { return node.kept && std::holds_alternative<CpuPass>(node.kind); });
-}
-
-std::vector<std::shared_ptr<TextureResource>> Graph::textures() const {
-  std::vector<std::shared_ptr<TextureResource>> owned;
-  for (std::size_t i = 0; i < state_->textures.size(); ++i) {
-    if (state_->writer[i] != kImported && state_->textures[i]->object) owned.push_back(state_->textures[i]);
-  }
-  return owned;
-}
 
 }  // namespace gnomon

@@ -8,10 +8,11 @@
 namespace gnomon {
 
 const FormatFacts& formatFacts(Format format) {
-  static constexpr std::array<FormatFacts, 12> kTable{{
+  static constexpr std::array<FormatFacts, 13> kTable{{
       {"r8", GL_R8, 1, 1, false},
       {"r16f", GL_R16F, 1, 2, false},
       {"r32f", GL_R32F, 1, 4, false},
+      {"rg16f", GL_RG16F, 2, 4, false},
       {"rg32f", GL_RG32F, 2, 8, false},
       {"rgba8", GL_RGBA8, 4, 4, false},
       {"rgba16f", GL_RGBA16F, 4, 8, false},

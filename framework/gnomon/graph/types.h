@@ -41,7 +41,7 @@ struct Revisions {
   std::uint64_t& operator[](Input input) { return of[static_cast<std::size_t>(input)]; }
 };
 
-enum class Format : std::uint8_t { r8, r16f, r32f, rg32f, rgba8, rgba16f, rgba32f, rg32ui, d16, d24, d32f, d32f_s8 };
+enum class Format : std::uint8_t { r8, r16f, r32f, rg16f, rg32f, rgba8, rgba16f, rgba32f, rg32ui, d16, d24, d32f, d32f_s8 };
 
 /// What a format is, in one table.
 struct FormatFacts {
@@ -56,6 +56,13 @@ const FormatFacts& formatFacts(Format format);
 struct TextureInfo {
   glm::ivec2 size{1, 1};
   Format format = Format::r32f;
+  int layers = 0;  ///< 0: a plain texture (sampler2D); else an array of that
+                   ///< many (sampler2DArray)
+  /// Its contents are only needed while the passes that read it run: it may
+  /// share memory with other transient textures of one format and size, is made
+  /// again when a reader runs, and cannot be looked at afterwards. No output,
+  /// and none of a history.
+  bool transient = false;
 };
 
 /// Handles. They mean something only to the graph that gave them.
@@ -100,6 +107,7 @@ struct FrameCounters {
 /// Filled by the shared passes: the static part at set-up; near, far and biases each time the map is fitted.
 struct Facts {
   bool readsMap = false;       ///< the rest of the map's figures hold
+  bool comparesDepth = true;   ///< V is a mean of depth comparisons; else bounds derived from those do not hold
   bool perspective = true;     ///< texel extents grow with depth
   glm::dvec2 texel{0.0, 0.0};  ///< a map texel's extent: metres per metre of light depth, or metres (directional)
   double nearDepth = 0.0;  ///< metres along the light's axis from MapPlane's origin: the light, or the middle of all receivers
@@ -112,6 +120,7 @@ struct Facts {
   double biasSlope = 0.0;           ///< depth change across a texel
   double biasNormal = 0.0;          ///< texels
   double biasCurvature = 0.0;       ///< texels per texel of filter radius
+  bool radiusVaries = false;        ///< filterRadiusTexels and the bias that follows it are bounds of what pixels take
   double biasLimit = 0.0;           ///< no slope correction exceeds this many texel footprints
   bool receiverPlane = false;       ///< taps are compared with the receiver's plane
   double filterRadiusTexels = 0.0;  ///< farthest tap from the receiver, Chebyshev

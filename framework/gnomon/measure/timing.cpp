@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "gnomon/base/clock.h"
 #include "gnomon/base/error.h"
 
 namespace gnomon {
@@ -40,7 +42,7 @@ std::vector<TimedPair> timeBlock(const TimedFrame& frame, int poses, int block) 
 
 /// (A1+A2)/(B1+B2) of each pair, by block. Empty if any baseline took no time: the clock is too coarse for a ratio.
 std::optional<std::vector<std::vector<double>>> ratiosByBlock(const std::vector<TimedPair>& pairs, const TimingPlan& plan) {
-  std::vector<std::vector<double>> ratios(static_cast<std::size_t>(plan.blocks));
+  std::vector<std::vector<double>> ratios(pairs.size() / static_cast<std::size_t>(plan.poses));
   for (const TimedPair& pair : pairs) {
     const double candidate = reading(pair.candidate[0], plan.clock) + reading(pair.candidate[1], plan.clock);
     const double baseline = reading(pair.baseline[0], plan.clock) + reading(pair.baseline[1], plan.clock);
@@ -48,6 +50,11 @@ std::optional<std::vector<std::vector<double>>> ratiosByBlock(const std::vector<
     ratios[static_cast<std::size_t>(pair.block)].push_back(candidate / baseline);
   }
   return ratios;
+}
+
+std::optional<Interval> ratioInterval(const std::vector<TimedPair>& pairs, const TimingPlan& plan) {
+  const auto ratios = ratiosByBlock(pairs, plan);
+  return ratios ? bootstrapInterval(*ratios, medianInPlace, plan.bootstrap) : std::nullopt;
 }
 
 std::vector<double> flattened(const std::vector<std::vector<double>>& groups) {
@@ -58,10 +65,23 @@ std::vector<double> flattened(const std::vector<std::vector<double>>& groups) {
 
 }  // namespace
 
+PoseSteps::PoseSteps(int poses) {
+  for (std::vector<int>& visits : visits_) visits.assign(static_cast<std::size_t>(std::max(poses, 1)), 0);
+}
+
+int PoseSteps::next(Side side, int pose) {
+  int& visits = visits_[static_cast<std::size_t>(side)].at(static_cast<std::size_t>(pose));
+  return 2 * pose + visits++ % 2;
+}
+
 TimingFigures measurePaired(const TimedFrame& frame, const TimingPlan& plan) {
   if (plan.poses < 1 || plan.blocks < 1 || plan.warmup < 0) {
     throw Error(fmt::format("timing: {} poses, {} blocks, {} warm-up rounds; needs at least 1, 1 and 0", plan.poses,
                             plan.blocks, plan.warmup));
+  }
+  if (plan.halfWidth > 0.0 && !(plan.seconds > 0.0)) {
+    throw Error(
+        fmt::format("timing: {} seconds to reach a half width of {} in; needs more than 0", plan.seconds, plan.halfWidth));
   }
   for (int round = 0; round < plan.warmup; ++round) {
     for (const Side side : {Side::candidate, Side::baseline}) {
@@ -70,12 +90,20 @@ TimingFigures measurePaired(const TimedFrame& frame, const TimingPlan& plan) {
   }
 
   TimingFigures figures;
-  for (int block = 0; block < plan.blocks; ++block) {
+  const double start = wallMs();
+  const auto isEnough = [&] {
+    if (plan.halfWidth <= 0.0 || wallMs() - start > 1e3 * plan.seconds) return true;
+    const std::optional<Interval> interval = ratioInterval(figures.pairs, plan);
+    return interval && 0.5 * (interval->high - interval->low) <= plan.halfWidth;
+  };
+  int blocks = 0;
+  while (blocks < plan.blocks || !isEnough()) {
+    const int block = blocks++;
     const std::vector<TimedPair> pairs = timeBlock(frame, plan.poses, block);
     figures.pairs.insert(figures.pairs.end(), pairs.begin(), pairs.end());
   }
 
-  std::vector<std::vector<double>> timesByBlock(static_cast<std::size_t>(plan.blocks));
+  std::vector<std::vector<double>> timesByBlock(static_cast<std::size_t>(blocks));
   std::vector<double> wallTimes;
   for (const TimedPair& pair : figures.pairs) {
     for (const FrameTime& time : pair.candidate) {
@@ -92,7 +120,7 @@ TimingFigures measurePaired(const TimedFrame& frame, const TimingPlan& plan) {
   figures.ci95Ms = bootstrapInterval(timesByBlock, medianInPlace, plan.bootstrap);
   if (const auto ratios = ratiosByBlock(figures.pairs, plan)) {
     figures.ratio = median(flattened(*ratios));
-    figures.ratioCi95 = bootstrapInterval(*ratios, medianInPlace, plan.bootstrap);
+    figures.ratioCi95 = ratioInterval(figures.pairs, plan);
   }
   return figures;
 }

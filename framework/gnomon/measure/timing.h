@@ -32,6 +32,26 @@ struct TimingPlan {
   int warmup = 2;  ///< rounds over the poses of each side before anything is timed: first draws compile
   Clock clock = Clock::wall;
   BootstrapPlan bootstrap = {};
+  /// After `blocks`, more are added until half the width of the ratio's interval is at most this, or `seconds` of wall time
+  /// have passed since the first. Stopping by the interval makes it narrow by luck now and then: it covers a little less than
+  /// it claims. 0: no more than `blocks`.
+  double halfWidth = 0.0;
+  double seconds = 0.0;
+};
+
+/// Where on a path the frames of measurePaired stand. Each side comes to a pose twice in a block, and to the last pose twice
+/// running: on the same spot nothing would have changed since, and nothing would be run. So the path has two steps for each
+/// pose, and the visits to a pose take turns between them; both sides stand on the same steps equally often.
+class PoseSteps {
+ public:
+  explicit PoseSteps(int poses);
+
+  /// 2 pose or 2 pose + 1.
+  int next(Side side, int pose);
+  int count() const { return 2 * static_cast<int>(visits_[0].size()); }
+
+ private:
+  std::array<std::vector<int>, 2> visits_;
 };
 
 /// The two frames of each side at one pose of one block: raw values for the side file.
@@ -63,7 +83,8 @@ struct TimingFigures {
 /// pose's two frames of either side lie symmetric about the block's centre, so drift that is linear in time cancels within
 /// every pair. Blocks take turns in which side is outermost (A is the candidate in even blocks, the baseline in odd ones), so
 /// that the rest, drift's curvature, changes sign from block to block. Intervals by bootstrap over blocks, then pairs.
-/// Throws Error on a plan without poses or blocks, on a clock that a frame lacks, and on a time that is negative or not finite.
+/// Throws Error on a plan without poses or blocks, or with a half width but no time to reach it in, on a clock that a frame
+/// lacks, and on a time that is negative or not finite.
 TimingFigures measurePaired(const TimedFrame& frame, const TimingPlan& plan);
 
 }  // namespace gnomon

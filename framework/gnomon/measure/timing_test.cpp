@@ -126,6 +126,65 @@ TEST(MeasurePaired, IntervalIsNotVacuousUnderHeavyTails) {
   EXPECT_LT(width(*figures.ratioCi95), 0.25 * kRatio);
 }
 
+/// Frames whose candidate takes up to `spread` more or less than 1 ms.
+TimedFrame unsteady(double spread) {
+  return [spread, random = RandomStream(3)](Side side, int) mutable {
+    return allClocks(side == Side::baseline ? 1.0 : 1.0 + spread * (2.0 * random.uniform() - 1.0));
+  };
+}
+
+TEST(MeasurePaired, BlocksAreAddedUntilTheIntervalIsNarrow) {
+  const TimingFigures figures =
+      measurePaired(unsteady(0.1), {.poses = 2, .blocks = 2, .warmup = 0, .halfWidth = 0.01, .seconds = 300.0});
+  EXPECT_LE(width(*figures.ratioCi95), 2.0 * 0.01);
+  EXPECT_GT(figures.pairs.size(), 2U * 2U) << "two blocks of such frames differ by more";
+}
+
+TEST(MeasurePaired, ANarrowIntervalEndsAtThePlansBlocks) {
+  const TimingFigures figures =
+      measurePaired(unsteady(0.0), {.poses = 2, .blocks = 3, .warmup = 0, .halfWidth = 0.05, .seconds = 300.0});
+  EXPECT_EQ(figures.pairs.size(), 2U * 3U);
+}
+
+TEST(MeasurePaired, TimeRunsOutBeforeAnImpossibleWidth) {
+  const TimingFigures figures =
+      measurePaired(unsteady(0.5), {.poses = 2, .blocks = 1, .warmup = 0, .halfWidth = 1e-9, .seconds = 0.05});
+  EXPECT_GE(figures.pairs.size(), 2U);
+}
+
+TEST(MeasurePaired, AHalfWidthWithoutTimeIsAnError) {
+  EXPECT_THROW(measurePaired(unsteady(0.0), {.halfWidth = 0.1}), Error);
+}
+
+TEST(PoseSteps, NoSideStandsStillBetweenTwoFrames) {
+  PoseSteps steps(3);
+  std::map<Side, int> last;
+  measurePaired(
+      [&](Side side, int pose) {
+        const int step = steps.next(side, pose);
+        EXPECT_EQ(step / 2, pose);
+        EXPECT_FALSE(last.contains(side) && last.at(side) == step) << "step " << step;
+        last[side] = step;
+        return allClocks(1.0);
+      },
+      {.poses = 3, .blocks = 4, .warmup = 2});
+}
+
+TEST(PoseSteps, BothSidesOfAPairStandOnTheSameSteps) {
+  PoseSteps steps(3);
+  std::map<std::pair<Side, int>, int> frames;
+  measurePaired(
+      [&](Side side, int pose) {
+        ++frames[{side, steps.next(side, pose)}];
+        return allClocks(1.0);
+      },
+      {.poses = 3, .blocks = 1, .warmup = 0});
+  for (int step = 0; step < steps.count(); ++step) {
+    EXPECT_EQ((frames[{Side::candidate, step}]), 1) << step;
+    EXPECT_EQ((frames[{Side::baseline, step}]), 1) << step;
+  }
+}
+
 TEST(MeasurePaired, WarmupIsNotTimed) {
   std::map<std::pair<Side, int>, int> calls;
   const TimingFigures figures = measurePaired(

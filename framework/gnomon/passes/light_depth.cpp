@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/trigonometric.hpp>
 #include <memory>
 
 #include "gnomon/passes/light_map.h"
@@ -26,6 +27,7 @@ struct LightMapBlock {
   glm::vec4 texel;
   glm::vec4 precision;
   glm::vec4 filter;
+  glm::vec4 source;
 };
 
 /// z = a / d + b (perspective) or a d + b: 1 at near, 0 at far.
@@ -33,6 +35,8 @@ glm::dvec2 depthCoefficients(bool perspective, double near, double far) {
   const double range = far - near;
   return perspective ? glm::dvec2(near * far / range, -near / range) : glm::dvec2(-1.0 / range, far / range);
 }
+
+constexpr double kNearestRatio = 1e-10;
 
 struct FormatPrecision {
   Format format;
@@ -50,7 +54,26 @@ FormatPrecision precisionOf(MapFormat format) {
     case MapFormat::d32f:
       break;
   }
-  return {Format::d32f, std::ldexp(1.0, -23), true, 1e-10};
+  return {Format::d32f, std::ldexp(1.0, -23), true, kNearestRatio};
+}
+
+/// See mapSource in shaders/gnomon/light_map.glsl.
+glm::vec4 sourceExtent(const Light& light) {
+  if (light.type == LightType::directional) {
+    const double width = 2.0 * std::tan(glm::radians(light.angularDiameterDegrees) * 0.5);
+    return glm::vec4(glm::dvec4(width, width, 1.0, 0.0));
+  }
+  if (light.source.shape == SourceShape::rectangle)
+    return glm::vec4(glm::dvec4(light.source.size, 0.0, glm::radians(light.source.rollDegrees)));
+  const double width = light.source.shape == SourceShape::disc ? 2.0 * light.source.radius : 0.0;
+  return glm::vec4(glm::dvec4(width, width, 1.0, 0.0));
+}
+
+/// Half of how far the source's image reaches, in texels, through a caster at near on a receiver at far.
+double widestPenumbraRadius(const Light& light, const MapPlane& plane, const MapFit& fit, glm::ivec2 mapSize) {
+  const double distance = plane.perspective ? (fit.far - fit.near) / (fit.near * fit.far) : fit.far - fit.near;
+  const glm::dvec2 extent = glm::dvec2(sourceExtent(light)) * std::max(distance, 0.0) / plane.halfExtent;
+  return 0.5 * glm::length(extent * 0.5 * glm::dvec2(mapSize));  // whatever way the source is rolled
 }
 
 LightMapBlock lightMapBlock(const FrameInputs& frame, const MapPlane& plane, const MapFit& fit, glm::ivec2 mapSize,
@@ -86,7 +109,8 @@ LightMapBlock lightMapBlock(const FrameInputs& frame, const MapPlane& plane, con
           glm::vec4(glm::dvec4(1.0 / glm::dvec2(mapSize), glm::dvec2(mapSize))),
           glm::vec4(plane.perspective ? 1.0f : 0.0f, static_cast<float>(precision.step), precision.relative ? 1.0f : 0.0f,
                     static_cast<float>(glm::length(offset))),
-          glm::vec4(static_cast<float>(filterRadiusTexels), 0.0f, 0.0f, 0.0f)};
+          glm::vec4(static_cast<float>(filterRadiusTexels), 0.0f, 0.0f, 0.0f),
+          sourceExtent(frame.light)};
 }
 
 }  // namespace
@@ -131,8 +155,10 @@ Support depthMapSupport(const SceneSurvey& /*survey*/, const Light& light, const
 }
 
 LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapParameters& parameters, const EffectPlan& plan,
-                      double filterRadiusTexels) {
+                      const MapReach& reach) {
   const FormatPrecision precision = precisionOf(parameters.format);
+  // A map of distances must hold the nearest caster's own.
+  const double nearRatio = reach.distances ? kNearestRatio : precision.nearRatio;
   const glm::ivec2 mapSize = parameters.size;
 
   Facts& facts = graph.facts();
@@ -140,8 +166,6 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapPar
   facts.depthStep = precision.step;
   facts.floatDepth = precision.relative;
   facts.mapSize = mapSize;
-  facts.receiverPlane = parameters.bias.receiverPlane;
-  facts.filterRadiusTexels = filterRadiusTexels;
 
   const Buffer lightMap = graph.buffer("LightMap", sizeof(LightMapBlock));
   const DrawList casters = graph.drawList("casters");
@@ -153,28 +177,40 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapPar
              .after = {frame.parameters},
              .buffers = {lightMap},
              .draws = {casters},
-             .run = [=, &bias = parameters.bias](CpuContext& context) {
-               const FrameInputs& inputs = context.frame();
-               const MapSubject subject = mapSubject(inputs);
-               const MapPlane plane = mapPlane(subject);
-               // A tap at the filter's border may fall anywhere in its texel, and rasterisation decides at texel centres: one
-               // texel more.
-               const glm::dvec2 margin = (filterRadiusTexels + bias.normal + 1.5) * 2.0 / glm::dvec2(mapSize);
-               fitMap(subject, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = precision.nearRatio}, *scratch);
-               context.writeBlock(lightMap, lightMapBlock(inputs, plane, *scratch, mapSize, precision, filterRadiusTexels));
-               context.draw(casters, scratch->casters, plane.axes.origin);
-               Facts& now = context.facts();
-               now.perspective = plane.perspective;
-               now.texel = 2.0 * plane.halfExtent / glm::dvec2(mapSize);
-               now.nearDepth = scratch->near;
-               now.farDepth = scratch->far;
-               now.cameraDistance = glm::length(inputs.camera.position - plane.axes.origin);
-               now.biasConstant = bias.constant;
-               now.biasSlope = bias.slope;
-               now.biasNormal = bias.normal;
-               now.biasCurvature = bias.curvature;
-               now.biasLimit = bias.limit;
-             }});
+             .run =
+                 [=, &bias = parameters.bias, radius = reach.radiusTexels, varies = reach.varies](CpuContext& context) {
+                   const double filterRadiusTexels = radius();
+                   const FrameInputs& inputs = context.frame();
+                   const MapSubject subject = mapSubject(inputs);
+                   const MapPlane plane = mapPlane(subject);
+                   // A tap at the filter's border may fall anywhere in its texel, and rasterisation decides at texel
+                   // centres: one texel more.
+                   const glm::dvec2 margin = (filterRadiusTexels + bias.normal + 1.5) * 2.0 / glm::dvec2(mapSize);
+                   fitMap(subject, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = nearRatio}, *scratch);
+                   context.writeBlock(lightMap, lightMapBlock(inputs, plane, *scratch, mapSize, precision, filterRadiusTexels));
+                   context.draw(casters, scratch->casters, plane.axes.origin);
+                   Facts& now = context.facts();
+                   now.perspective = plane.perspective;
+                   now.texel = 2.0 * plane.halfExtent / glm::dvec2(mapSize);
+                   now.nearDepth = scratch->near;
+                   now.farDepth = scratch->far;
+                   now.cameraDistance = glm::length(inputs.camera.position - plane.axes.origin);
+                   now.radiusVaries = varies;
+                   now.filterRadiusTexels =
+                       varies ? std::min(filterRadiusTexels, widestPenumbraRadius(inputs.light, plane, *scratch, mapSize) + 0.5)
+                              : filterRadiusTexels;
+                   now.receiverPlane = bias.receiverPlane;
+                   now.biasConstant = bias.constant;
+                   now.biasSlope = bias.slope;
+                   now.biasNormal = bias.normal;
+                   now.biasCurvature = bias.curvature;
+                   now.biasLimit = bias.limit;
+                 },
+             .identity =
+                 [=, &bias = parameters.bias, radius = reach.radiusTexels] {
+                   return fmt::format("fit {}x{} {} cull {} fit {} near {:a} radius {:a} normal {:a}", mapSize.x, mapSize.y,
+                                      static_cast<int>(precision.format), cull, fit, nearRatio, radius(), bias.normal);
+                 }});
 
   const Texture map = graph.texture("depth map", {mapSize, precision.format});
   // Casters nearer than near are clamped to it: they still block, and near can be fitted to what resolves the receivers.
@@ -185,6 +221,7 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapPar
                                .depthClamp = true,
                                .buffers = {{"LightMap", lightMap}}});
   graph.provide("LightMap", lightMap);
+  graph.provide("depthMap", map);
   return {map};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gnomon/base/table.h"
+#include "gnomon/technique/component.h"
 #include "gnomon/technique/technique.h"
 
 namespace gnomon {
@@ -36,11 +37,11 @@ struct LightDepth {
 };
 
 /// Declares two passes: `fit` on the CPU (the light's matrices, near and far, which casters to draw) and `light depth`.
-/// `filterRadiusTexels` is how far from the receiver's own texel the technique reads (Chebyshev): casters that could only
-/// matter beyond it are culled. Provides the block LightMap to later shaders and fills the graph's facts.
+/// Casters that could only matter beyond what `reach` says are culled. Provides the block LightMap and the sampler depthMap to
+/// later shaders and fills the graph's facts.
 /// `parameters` must outlive the graph, as a technique's do: `fit` follows the biases while they change.
 LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapParameters& parameters, const EffectPlan& plan,
-                      double filterRadiusTexels);
-LightDepth lightDepth(GraphBuilder&, const Frame&, const DepthMapParameters&&, const EffectPlan&, double) = delete;
+                      const MapReach& reach);
+LightDepth lightDepth(GraphBuilder&, const Frame&, const DepthMapParameters&&, const EffectPlan&, const MapReach&) = delete;
 
 }  // namespace gnomon

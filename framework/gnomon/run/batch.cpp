@@ -1,7 +1,14 @@
 #include "gnomon/run/batch.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -9,10 +16,51 @@
 #include "gnomon/base/log.h"
 #include "gnomon/measure/clock_trials.h"
 #include "gnomon/run/light_run.h"
+#include "gnomon/run/pictures.h"
+#include "gnomon/run/trace.h"
 
 namespace gnomon {
 
 namespace {
+
+/// Holds results.jsonl for this process while it lives, by a lock on a file beside it: the results file itself is locked by
+/// each append, and replaced at the start. The lock ends with the process, however that ends; its file stays.
+class ResultsLock {
+ public:
+  explicit ResultsLock(const std::filesystem::path& results) {
+    std::filesystem::path path = results;
+    path.replace_filename("." + results.filename().string() + ".lock");
+    std::error_code code;
+    std::filesystem::create_directories(path.parent_path(), code);
+    if (code) throw Error(fmt::format("{}: cannot create the folder: {}", path.parent_path().string(), code.message()));
+    file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (file_ < 0) throw Error(fmt::format("{}: cannot open: {}", path.string(), std::strerror(errno)));
+    if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+      const std::string holder = contents();
+      ::close(file_);
+      throw Error(
+          fmt::format("{}: another batch{} is writing it; wait for its end, give another --out, or share the jobs of "
+                      "one batch between processes with --shard",
+                      results.string(), holder.empty() ? "" : " (process " + holder + ")"));
+    }
+    const std::string self = std::to_string(::getpid());
+    if (::ftruncate(file_, 0) != 0 || ::pwrite(file_, self.data(), self.size(), 0) < 0) {
+      log::warning(fmt::format("{}: cannot write: {}", path.string(), std::strerror(errno)));  // it only names the holder
+    }
+  }
+  ~ResultsLock() { ::close(file_); }
+  ResultsLock(const ResultsLock&) = delete;
+  ResultsLock& operator=(const ResultsLock&) = delete;
+
+ private:
+  std::string contents() const {
+    std::array<char, 24> text{};
+    const ssize_t got = ::pread(file_, text.data(), text.size(), 0);
+    return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))};
+  }
+
+  int file_ = -1;
+};
 
 std::map<std::string, JobRecord> earlierResults(const std::filesystem::path& directory) {
   std::map<std::string, JobRecord> byJob;
@@ -23,6 +71,13 @@ std::map<std::string, JobRecord> earlierResults(const std::filesystem::path& dir
     byJob.insert_or_assign(key, std::move(record));
   }
   return byJob;
+}
+
+/// Whether a job's earlier record holds all that this batch would make again, and its pictures are there.
+bool isWhole(const JobRecord& record, const ResolvedRun& run, const BatchOptions& options) {
+  if (record.status != JobStatus::ok || (options.measureTime && !record.time)) return false;
+  const auto paths = picturePaths(options.out / "images", record.job, run.config.output.images, options.exr);
+  return std::all_of(paths.begin(), paths.end(), [](const auto& path) { return fileStamp(path).has_value(); });
 }
 
 std::string label(const ResolvedRun& run, const ResolvedJob& job) {
@@ -48,16 +103,21 @@ JobRecord failedJob(const ResolvedRun& run, std::size_t light, const ResolvedTec
 BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, const BatchOptions& options,
                       const BatchProgress& progress) {
   BatchSummary summary;
-  summary.results = options.out / (options.shards > 1 ? fmt::format("results.{}.jsonl", options.shard) : "results.jsonl");
+  const std::string shard = options.shards > 1 ? fmt::format(".{}", options.shard) : "";
+  summary.results = options.out / fmt::format("results{}.jsonl", shard);
+  const ResultsLock lock(summary.results);
   const std::map<std::string, JobRecord> earlier =
       options.resume ? earlierResults(options.out) : std::map<std::string, JobRecord>{};
   if (!options.resume) writeFileAtomically(summary.results, "");
 
+  Trace trace(fmt::format("gnomon batch{}", shard));
   LightRunOptions how{.referenceCache = options.referenceCache,
                       .imageDirectory = options.out / "images",
                       .exr = options.exr,
-                      .checkFinite = options.checkFinite};
+                      .checkFinite = options.checkFinite,
+                      .trace = &trace};
   if (options.measureTime) {
+    const TraceSlice slice(&trace, "clock trials");
     const ClockChoice choice = chooseClock(runClockTrials());
     how.clock = choice.clock;
     log::info(fmt::format("clock: {} ({})", clockName(choice.clock), choice.reason));
@@ -76,14 +136,16 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
         if (static_cast<int>(mine % static_cast<std::size_t>(options.shards)) != options.shard) continue;
         const std::string name = label(run, job);
         const auto found = earlier.find(jobKey(run, light, job.technique));
-        if (found != earlier.end() && found->second.status == JobStatus::ok && (!options.measureTime || found->second.time)) {
+        if (found != earlier.end() && isWhole(found->second, run, options)) {
           ++summary.kept;
           summary.records.push_back(found->second);
           progress(mine + 1, total, name, &summary.records.back());
           continue;
         }
+        TraceSlice slice(&trace, name, {{"config", run.config.name}, {"light", std::to_string(light)}});
         if (!lightRun && noReference.empty()) {
           progress(mine, total, fmt::format("{}: reference {}", run.sceneName, run.reference.name()), nullptr);
+          const TraceSlice making(&trace, "light");
           try {
             lightRun = std::make_unique<LightRun>(run, light, registry, how);
           } catch (const std::exception& error) {
@@ -93,11 +155,17 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
         progress(mine, total, name, nullptr);
         JobRecord record = lightRun ? lightRun->run(job.technique) : failedJob(run, light, job.technique, noReference);
         appendLineSynced(summary.results, toJsonLine(record));
+        slice.note("job", record.job);
+        slice.note("status", jobStatusName(record.status));
         if (record.time) writeFileAtomically(options.out / "timing" / (record.job + ".json"), timingPairsJson(*record.time));
         summary.records.push_back(std::move(record));
         progress(mine + 1, total, name, &summary.records.back());
       }
     }
+  }
+  if (summary.kept < summary.records.size()) {
+    summary.trace = options.out / fmt::format("trace{}.json", shard);
+    trace.write(summary.trace);
   }
   for (const JobRecord& record : summary.records) summary.notOk += record.status == JobStatus::ok ? 0 : 1;
   return summary;

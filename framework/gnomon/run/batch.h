@@ -13,8 +13,10 @@ namespace gnomon {
 
 struct BatchOptions {
   std::filesystem::path out = {};
-  bool resume = false;  ///< keep results that are there, run what is missing; else the results file starts anew
-  int shard = 0;        ///< this process takes jobs shard, shard + shards, ... of all
+  /// Keep results that are there, run what is missing: jobs without a record or, of one, without a picture that this batch
+  /// would write. Else the results file starts anew.
+  bool resume = false;
+  int shard = 0;  ///< this process takes jobs shard, shard + shards, ... of all
   int shards = 1;
   bool measureTime = true;
   bool exr = true;
@@ -27,14 +29,17 @@ struct BatchSummary {
   std::size_t kept = 0;            ///< found by --resume
   std::size_t notOk = 0;
   std::filesystem::path results;
+  std::filesystem::path trace;  ///< empty where nothing had to be run
 };
 
 /// Called when a job starts (record null) and when it has ended.
 using BatchProgress =
     std::function<void(std::size_t done, std::size_t total, const std::string& what, const JobRecord* record)>;
 
-/// Runs all jobs of all runs in the current OpenGL context. Each record is appended whole and synced. Throws Error only for
-/// what ends a batch: a folder that cannot be written, a reference that cannot be rendered.
+/// Runs all jobs of all runs in the current OpenGL context. Each record is appended whole and synced. OUT/trace.json (of a
+/// shard, trace.I.json) shows where the time went: a slice for each job that was run, and in it its steps and passes; it is of
+/// this run alone, written at its end, and stays as it was if nothing had to be run. Throws Error only for what ends a batch: a
+/// folder that cannot be written, a results file that another process is writing.
 BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, const BatchOptions& options,
                       const BatchProgress& progress);
 

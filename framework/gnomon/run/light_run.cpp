@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
@@ -53,6 +54,26 @@ std::vector<PlanEntry> planEntries(const EffectPlan& plan) {
   return entries;
 }
 
+SessionSetup sessionSetup(const ResolvedRun& run, std::size_t light) {
+  return {run.scene,       run.lights[light],
+          run.camera,      run.config.output.size,
+          run.config.plan, posesOf(run.lights[light], 2 * posesOf(run.config.measure))};
+}
+
+/// Rounding may carry V this far out of [0,1]: two units in the last place of a half float at 1.
+constexpr float kRounding = 2.0f / 1024.0f;
+
+/// What the record says of values that no visibility has; empty if there are none.
+std::string impossibleValues(const Image& visibility) {
+  const auto isPossible = [](float v) { return v >= -kRounding && v <= 1.0f + kRounding; };  // NaN is not
+  const auto first = std::find_if_not(visibility.data.begin(), visibility.data.end(), isPossible);
+  if (first == visibility.data.end()) return {};
+  const auto at = first - visibility.data.begin();
+  return fmt::format("V is {} at pixel ({}, {}), and outside [0,1] at {} pixels", *first, at % visibility.width,
+                     at / visibility.width,
+                     std::count_if(first, visibility.data.end(), [&](float v) { return !isPossible(v); }));
+}
+
 }  // namespace
 
 Light lightAtPose(const Light& light, int pose, int poses) {
@@ -84,14 +105,38 @@ struct LightRun::State {
         light(l),
         registry(g),
         options(std::move(o)),
-        session({r.scene, r.lights[l], r.camera, r.config.output.size, r.config.plan,
-                 posesOf(r.lights[l], posesOf(r.config.measure))}),
-        reference(renderReference(session, registry, {r.reference, options.referenceCache})),
+        session(sessionSetup(r, l)),
+        reference(tracedReference()),
         machine{gl::currentContextInfo().renderer, processorName()} {
     session.runShared();
     receivers = receiverImages(session);
     classes = classesOf(session, receivers, reference.halves);
     if (options.clock == Clock::gpu) gpuTimer = gl::makeQuery(GL_TIME_ELAPSED);
+  }
+
+  /// Does the work inside a slice of the trace.
+  template <class Work>
+  auto traced(const std::string& name, const Work& work) const {
+    const TraceSlice slice(options.trace, name);
+    return work();
+  }
+
+  /// A technique whose defences are off is judged by a reference that has its own.
+  RenderedReference soundReference() {
+    const ReferenceRequest request{run.reference, options.referenceCache};
+    if (run.config.plan.without.empty()) return renderReference(session, registry, request);
+    SessionSetup setup = sessionSetup(run, light);
+    setup.overrides.without.clear();
+    Session sound(std::move(setup));
+    return renderReference(sound, registry, request);
+  }
+
+  RenderedReference tracedReference() {
+    TraceSlice slice(options.trace, "reference");
+    RenderedReference rendered = soundReference();
+    slice.note("technique", run.reference.name());
+    slice.note("from", rendered.fromCache ? "cache" : fmt::format("{} rays", rendered.rays));
+    return rendered;
   }
 
   const Light& nominal() const { return run.lights[light]; }
@@ -130,11 +175,13 @@ struct LightRun::State {
     const TimingPlan plan{.poses = poses, .blocks = run.config.measure.blocks, .clock = clock};
     for (const std::string& regime : run.config.measure.regimes) {
       const bool moving = regime == "dynamic";
+      const TraceSlice slice(options.trace, "time: " + regime, {{"clock", clockName(clock)}});
       session.moveLight(nominal());
+      PoseSteps steps(poses);
       TimingFigures figures = measurePaired(
           [&](Side side, int pose) {
             const Slot slot = side == Side::candidate ? candidate : baseline;
-            return moving ? timedFrame(slot, lightAtPose(nominal(), pose, poses)) : timedFrame(slot);
+            return moving ? timedFrame(slot, lightAtPose(nominal(), steps.next(side, pose), steps.count())) : timedFrame(slot);
           },
           plan);
       if (!moving) {  // nothing runs: what a ratio of two nothings says is noise
@@ -149,13 +196,20 @@ struct LightRun::State {
   }
 
   std::vector<PassTime> passTimes(Slot slot, int poses) {
+    const TraceSlice slice(options.trace, "passes", {{"finish", "after each pass: their sum exceeds a timed frame"}});
     std::vector<std::string> names;
     std::vector<std::vector<double>> times;
-    for (int i = 0; i < kPassTimingFrames; ++i) {
-      session.moveLight(lightAtPose(nominal(), i % std::max(poses, 2), std::max(poses, 2)));
+    const int positions = std::max(poses, 2);
+    session.moveLight(nominal());
+    session.runShared();
+    session.runTechnique(slot);
+    for (int i = 0; i < kPassTimingFrames; ++i) {  // never where the frame before stood: nothing would run
+      session.moveLight(lightAtPose(nominal(), (i + 1) % positions, positions));
       session.runShared();
       glFinish();
+      const double start = wallMs();
       const GraphReport report = session.runTechnique(slot, {.timePasses = true});
+      traceFrame(start, wallMs() - start, report);
       times.resize(report.passes.size());
       names.resize(report.passes.size());
       for (std::size_t p = 0; p < report.passes.size(); ++p) {
@@ -168,17 +222,33 @@ struct LightRun::State {
     return passes;
   }
 
+  /// Passes ran one after the other, each to its finish: each begins where the one before it ended.
+  void traceFrame(double startMs, double durationMs, const GraphReport& report) const {
+    if (options.trace == nullptr) return;
+    options.trace->add("frame", startMs, durationMs);
+    for (const PassReport& pass : report.passes) {
+      if (!pass.ran) continue;
+      options.trace->add(pass.name, startMs, pass.wallMs, {{"cpu_ms", fmt::format("{:.4f}", pass.cpuMs)}});
+      startMs += pass.wallMs;
+    }
+  }
+
   void measure(JobRecord& record, const ResolvedTechnique& technique) {
     session.removeSlots();
     session.moveLight(nominal());
-    const Slot slot = session.addSlot(technique.technique, technique.parameters);
+    const Slot slot = traced("set-up", [&] { return session.addSlot(technique.technique, technique.parameters); });
     if (!session.support(slot).ok()) {
       record.status = JobStatus::refused;
       record.reason = session.support(slot).refusal;
       return;
     }
-    const FrameReport frame = session.frame(slot, graphRun());
-    const Image visibility = session.visibility(slot);
+    Image visibility;
+    const FrameReport frame = traced("first frame", [&] {  // what it draws with is compiled in it
+      FrameReport report = session.frame(slot, graphRun());
+      visibility = session.visibility(slot);
+      return report;
+    });
+    record.reason = impossibleValues(visibility);
     record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
     const FrameCounters& c = frame.technique.counters;
     record.work.passesRun = c.passesRun;
@@ -189,13 +259,15 @@ struct LightRun::State {
     record.work.rays = c.rays;
     record.memoryBytes = session.memoryBytes(slot);
     if (!options.imageDirectory.empty()) {
+      const TraceSlice slice(options.trace, "pictures");
       const Image shaded = session.shaded(slot);
       writePictures(options.imageDirectory, record.job, run.config.output.images, options.exr,
                     {shaded, visibility, reference.halves, receivers.mask, classes, receivers.positions, receivers.normals},
                     session);
     }
     if (options.clock) {
-      const Slot baseline = session.addSlot(run.baseline.technique, run.baseline.parameters);
+      const Slot baseline =
+          traced("baseline's set-up", [&] { return session.addSlot(run.baseline.technique, run.baseline.parameters); });
       if (session.support(baseline).ok()) record.time = time(slot, baseline);
     }
   }

@@ -10,6 +10,7 @@
 #include "gnomon/measure/clocks.h"
 #include "gnomon/measure/results.h"
 #include "gnomon/run/resolve.h"
+#include "gnomon/run/trace.h"
 
 namespace gnomon {
 
@@ -19,6 +20,7 @@ struct LightRunOptions {
   std::filesystem::path imageDirectory = {};  ///< empty: no pictures
   bool exr = false;
   bool checkFinite = false;
+  Trace* trace = nullptr;  ///< gets a slice for each step, the passes' too; none of them inside what is timed
 };
 
 /// The light at pose p of n of the dynamic regime: turned about its target on a closed path within +-0.5 degrees; pose 0 is

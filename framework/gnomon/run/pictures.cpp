@@ -81,26 +81,33 @@ Image colourOf(const Image& rgba) {
   return picture;
 }
 
+std::vector<std::filesystem::path> picturePaths(const std::filesystem::path& directory, const std::string& stem,
+                                                const std::vector<std::string>& kinds, bool exr) {
+  std::vector<std::filesystem::path> paths;
+  for (const std::string& kind : kinds) paths.push_back(directory / (stem + "_" + kind + ".png"));
+  if (exr) paths.push_back(directory / (stem + ".exr"));
+  return paths;
+}
+
 std::vector<std::filesystem::path> writePictures(const std::filesystem::path& directory, const std::string& stem,
                                                  const std::vector<std::string>& kinds, bool exr, const JobPictures& pictures,
                                                  const Session& session) {
-  std::vector<std::filesystem::path> written;
+  const std::vector<std::filesystem::path> paths = picturePaths(directory, stem, kinds, exr);
   Image reference = pictures.reference.a;
   for (std::size_t i = 0; i < reference.data.size(); ++i)
     reference.data[i] = 0.5f * (reference.data[i] + pictures.reference.b.data[i]);
-  for (const std::string& kind : kinds) {
-    const std::filesystem::path path = directory / (stem + "_" + kind + ".png");
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const std::string& kind = kinds[i];
+    const std::filesystem::path& path = paths[i];
     if (kind == "shaded") writePng(path, colourOf(pictures.shaded));
     if (kind == "visibility") writePng(path, pictures.visibility);
     if (kind == "reference") writePng(path, reference);
     if (kind == "error") writePng(path, signedErrorPicture(pictures.visibility, pictures.reference, pictures.mask));
     if (kind == "class") writePng(path, classPicture(pictures.classes));
-    written.push_back(path);
   }
   if (exr) {
     const glm::dvec3 camera = session.camera().position;
-    const std::filesystem::path path = directory / (stem + ".exr");
-    writeExr(path,
+    writeExr(paths.back(),
              {{"visibility", pictures.visibility},
               {"reference_a", pictures.reference.a},
               {"reference_b", pictures.reference.b},
@@ -114,9 +121,8 @@ std::vector<std::filesystem::path> writePictures(const std::filesystem::path& di
               {"normal.z", channelOf(pictures.normals, 2)}},
              {{"gnomon.light", writeObject(*lightTable(), &session.light()).dump()},
               {"gnomon.camera", writeObject(*cameraTable(), &session.camera()).dump()}});
-    written.push_back(path);
   }
-  return written;
+  return paths;
 }
 
 }  // namespace gnomon

@@ -33,8 +33,12 @@ struct JobPictures {
   const Image& normals;
 };
 
-/// Writes the pictures named in `kinds` (OutputChoice::images) as DIRECTORY/STEM_KIND.png and, with `exr`, all channels of
-/// design section 9 as DIRECTORY/STEM.exr, with light and camera as metadata. Returns the paths.
+/// Where writePictures puts them: DIRECTORY/STEM_KIND.png for each of `kinds` (OutputChoice::images) and, with `exr`,
+/// DIRECTORY/STEM.exr.
+std::vector<std::filesystem::path> picturePaths(const std::filesystem::path& directory, const std::string& stem,
+                                                const std::vector<std::string>& kinds, bool exr);
+
+/// Writes them; the EXR holds all channels of design section 9, with light and camera as metadata. Returns the paths.
 std::vector<std::filesystem::path> writePictures(const std::filesystem::path& directory, const std::string& stem,
                                                  const std::vector<std::string>& kinds, bool exr, const JobPictures& pictures,
                                                  const Session& session);

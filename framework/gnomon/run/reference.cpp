@@ -8,6 +8,7 @@
 
 #include "gnomon/base/files.h"
 #include "gnomon/base/json.h"
+#include "gnomon/base/log.h"
 #include "gnomon/measure/classes.h"
 #include "gnomon/run/pictures.h"
 
@@ -28,6 +29,18 @@ std::string shaderText(const std::filesystem::path& directory) {
   std::string text;
   for (const auto& file : files) text += readFile(file);
   return text;
+}
+
+std::string shadersOf(const OpenTechnique& technique) {
+  std::string text;
+  for (const auto& directory : technique.directories) text += shaderText(directory);
+  return text;
+}
+
+std::string codeOf(const OpenTechnique& technique) {
+  std::string bytes;
+  for (const auto& library : technique.libraries) bytes += readFile(library);
+  return bytes;
 }
 
 Image renderHalf(Session& session, const ResolvedTechnique& technique, std::uint64_t& rays) {
@@ -52,6 +65,15 @@ Image normalLightCosine(const Session& session, const ReceiverImages& receivers)
     cosine.data[i] = static_cast<float>(glm::dot(n, towardsCentre(session.light(), axes, p)));
   }
   return cosine;
+}
+
+/// A cache that cannot be written costs time, and no result.
+void keep(const std::filesystem::path& cache, const std::string& key, const ReferencePair& halves) {
+  try {
+    storeReference(cache, key, halves);
+  } catch (const Error& error) {
+    log::warning(fmt::format("reference cache: the reference is not kept: {}", error.what()));
+  }
 }
 
 }  // namespace
@@ -86,18 +108,17 @@ std::string referenceKey(const Session& session, const ResolvedTechnique& techni
       contentHash(session.scene()), writeObject(*lightTable(), &bare).dump(),
       writeObject(*cameraTable(), &session.camera()).dump(), session.outputSize().x, session.outputSize().y, technique.name(),
       technique.parametersJson().dump(),
-      hashHex(readFile(technique.technique.registered->library) +
-              readFile(installationDirectory().parent_path() / "libgnomon.so")),
-      plan, frameworkAbiTag(),
-      hashHex(shaderText(installationDirectory() / "shaders") +
-              shaderText(Registry::directory(*technique.technique.registered))),
+      hashHex(codeOf(technique.technique) + readFile(installationDirectory().parent_path() / "libgnomon.so")), plan,
+      frameworkAbiTag(), hashHex(shaderText(installationDirectory() / "shaders") + shadersOf(technique.technique)),
       info.renderer, info.version);
 }
 
 RenderedReference renderReference(Session& session, Registry& registry, const ReferenceRequest& request) {
   RenderedReference result;
-  const std::string key = request.cache.empty() ? std::string() : referenceKey(session, request.technique);
-  if (!request.cache.empty()) {
+  // What is rendered without some defence is nobody's reference but this session's.
+  const bool isKept = !request.cache.empty() && session.plan().defencesOff().empty();
+  const std::string key = isKept ? referenceKey(session, request.technique) : std::string();
+  if (isKept) {
     if (std::optional<ReferencePair> cached = loadReference(request.cache, key)) {
       const glm::ivec2 size = session.outputSize();
       if (cached->a.width == size.x && cached->a.height == size.y) return {std::move(*cached), true, 0};
@@ -113,7 +134,7 @@ RenderedReference renderReference(Session& session, Registry& registry, const Re
   };
   result.halves.a = half(1000001);  // far from the seeds that a technique of the same kind would be given
   result.halves.b = noisy ? half(1000002) : result.halves.a;
-  if (!request.cache.empty()) storeReference(request.cache, key, result.halves);
+  if (isKept) keep(request.cache, key, result.halves);
   return result;
 }
 

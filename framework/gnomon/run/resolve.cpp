@@ -80,7 +80,8 @@ Json ResolvedTechnique::parametersJson() const {
 }
 
 std::string ResolvedTechnique::parametersText() const {
-  const std::shared_ptr<void> defaults = technique.entry->makeParameters();
+  Problems saidAlready;
+  const std::shared_ptr<void> defaults = presetOf(technique, saidAlready);
   std::string text;
   for (const Field& field : technique.entry->parameters->fields()) {
     const std::string value = valueText(field, parameters.get());
@@ -132,7 +133,7 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
   }
   run.sceneName = choice.builtin.empty() ? choice.file.filename().string() : choice.builtin;
   run.lights = config.lights.value_or(run.scene.lights);
-  if (loaded && run.lights.empty()) {
+  if (loaded && !config.lights && run.lights.empty()) {
     problems.add(
         file, "/lights",
         fmt::format("the config names no light and {} has none; add \"lights\": [{{\"type\": \"spot\", ...}}]", run.sceneName));
@@ -169,10 +170,19 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
     problems.append(atTheirPlaces(found, request));
     run.jobs.push_back({request.light, std::move(technique)});
   }
+  for (std::size_t i = 0; i < config.plan.without.size(); ++i) {
+    reportIfUndeclared(config.plan.without[i], entriesOf(run), Location{file, "/plan/without"}.child(i), problems);
+  }
   return run;
 }
 
 }  // namespace
+
+std::vector<const Entry*> entriesOf(const ResolvedRun& run) {
+  std::vector<const Entry*> entries{run.reference.technique.entry, run.baseline.technique.entry};
+  for (const ResolvedJob& job : run.jobs) entries.push_back(job.technique.technique.entry);
+  return entries;
+}
 
 std::vector<ResolvedRun> resolveRuns(const std::filesystem::path& path, Registry& registry, Problems& problems) {
   Problems found;

@@ -20,7 +20,7 @@ struct ResolvedTechnique {
   const std::string& name() const { return technique.registered->declaration.name; }
   /// All values, defaults too, as JSON: what a record holds.
   Json parametersJson() const;
-  /// Only the values that differ from the entry's defaults, "taps 5, bias.slope 2"; for people.
+  /// Only the values that differ from the technique's own, "taps 5, bias.slope 2"; for people.
   std::string parametersText() const;
 };
 
@@ -43,6 +43,9 @@ struct ResolvedRun {
 /// The scene that the config chose at `where`: with its flags of who casts and receives, posed at its time, its moves applied
 /// (also to what poseAt gives). Throws InputError.
 Scene loadScene(const SceneChoice& choice, const Location& where);
+
+/// The entries of the run's techniques; null where one could not be opened.
+std::vector<const Entry*> entriesOf(const ResolvedRun& run);
 
 /// Reads and resolves: one run for each of the config's scenes. Every fault goes to `problems`, each once; then the result is
 /// only part of it.

@@ -3,6 +3,7 @@
 #include "gnomon/scene/gltf.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +95,7 @@ class Importer {
   }
 
   Scene import() {
+    refuseRequired();
     warnUnsupported();
     for (const tinygltf::Material& material : model_.materials) importMaterial(material);
     importNodes();
@@ -113,10 +115,19 @@ class Importer {
     if (warned_.insert(line).second) scene_.warnings.push_back(line);
   }
 
+  /// A file may not be read at all without what it requires (glTF 2.0, 3.12).
+  void refuseRequired() const {
+    for (std::size_t i = 0; i < model_.extensionsRequired.size(); ++i) {
+      const std::string& extension = model_.extensionsRequired[i];
+      if (kSupportedExtensions.contains(extension)) continue;
+      file_.fail(pointerTo("extensionsRequired", static_cast<int>(i)),
+                 fmt::format("the file requires {}; supported: {}; export it without", extension,
+                             fmt::join(kSupportedExtensions, ", ")));
+    }
+  }
+
   void warnUnsupported() {
     if (!file_.remarks.empty()) warn("the file is not quite valid: " + file_.remarks);
-    for (const std::string& extension : model_.extensionsRequired)
-      if (!kSupportedExtensions.contains(extension)) warn("the required extension " + extension + " is not supported");
     if (!model_.skins.empty()) warn("skins are not supported: meshes stay in their bind pose");
     for (const std::string& line : animations_.warnings) warn(line);
     if (!model_.textures.empty()) warn("textures are not supported: materials have their base colour factor");

@@ -15,8 +15,8 @@ namespace gnomon {
 /// Scene::camera is one that frames the whole scene. Cameras and lights bear their node's name, else their own. All animations
 /// of nodes play together, each repeating at its own length; of those that move the same thing only the first plays. Skins and
 /// morph targets are not animated, and neither are cameras and lights. Only files in the glTF's own folder and below are read;
-/// no image is. Throws InputError (file, JSON pointer where there is one) on a file that is not valid glTF; never crashes on
-/// one.
+/// no image is. Throws InputError (file, JSON pointer where there is one) on a file that is not valid glTF or requires an
+/// extension that is not supported; never crashes on one.
 Scene loadGltf(const std::filesystem::path& path);
 
 }  // namespace gnomon

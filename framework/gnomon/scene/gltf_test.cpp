@@ -233,13 +233,17 @@ TEST_F(Gltf, UnsupportedPrimitivesAreDroppedWithOneLine) {
 
 TEST_F(Gltf, UnsupportedKindsAreNamed) {
   Json json = triangle();
-  json["extensionsRequired"] = {"EXT_something"};
   json["materials"] = {{{"alphaMode", "MASK"}}};
   json["skins"] = {{{"joints", {0}}, {"inverseBindMatrices", 0}}};
   const Scene scene = load(json);
-  EXPECT_EQ(scene.warnings, (std::vector<std::string>{"the required extension EXT_something is not supported",
-                                                      "skins are not supported: meshes stay in their bind pose",
+  EXPECT_EQ(scene.warnings, (std::vector<std::string>{"skins are not supported: meshes stay in their bind pose",
                                                       "alphaMode MASK is not supported: the material is opaque"}));
+}
+
+TEST_F(Gltf, RequiredExtensionsThatAreNotSupportedAreErrors) {
+  Json json = triangle();
+  json["extensionsRequired"] = {"KHR_lights_punctual", "EXT_something"};
+  EXPECT_EQ(faultOf(json), "/extensionsRequired/1");
 }
 
 TEST_F(Gltf, SparseAccessorsAreDropped) {

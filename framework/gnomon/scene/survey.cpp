@@ -135,8 +135,7 @@ std::vector<VisibleReceiver> visibleReceivers(const Scene& scene, const std::vec
 
 void visitReceiversWithin(const Scene& scene, const std::vector<Bounds>& instanceBounds, const glm::dvec3& origin,
                           std::span<const glm::dvec4> planes, const ReceiverVisitor& visit) {
-  std::vector<glm::dvec3> points;
-  points.reserve(16);
+  thread_local std::vector<glm::dvec3> points;  // kept, so that frames take no memory; a visitor starts no other visit
   const auto add = [&](const glm::dvec3& p) {
     const glm::dvec3 corner = p + origin;
     if (std::find(points.begin(), points.end(), corner) == points.end()) points.push_back(corner);

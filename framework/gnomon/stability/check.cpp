@@ -58,9 +58,16 @@ Rendering renderIn(Session& session, Registry& registry, const std::string& name
   return result;
 }
 
-Rendering renderAlone(Registry& registry, const std::string& name, const Case& hardCase, const GraphRun& options) {
+SessionSetup setupOf(const Case& hardCase, const std::vector<std::string>& without) {
+  SessionSetup setup = hardCase.make();
+  setup.overrides.without = without;
+  return setup;
+}
+
+Rendering renderAlone(Registry& registry, const std::string& name, const Case& hardCase,
+                      const std::vector<std::string>& without, const GraphRun& options) {
   try {
-    Session session(hardCase.make());
+    Session session(setupOf(hardCase, without));
     return renderIn(session, registry, name, hardCase, options);
   } catch (const std::exception& error) {
     Rendering result;
@@ -142,13 +149,17 @@ void checkClasses(const Stage& stage, const Rendering& rendering, bool isFloor, 
   }
 }
 
-void checkNotEmpty(const Case& hardCase, bool isFloor, CellReport& cell) {
+void checkNotEmpty(const Case& hardCase, bool isFloor, const Facts& facts, CellReport& cell) {
   if (cell.receivers == 0 && (hardCase.noneLit.empty() || hardCase.noneDark.empty())) {
     return fail(cell, "nothing was checked: no pixel is in the receiver mask");
   }
   const auto check = [&](const ClassFigures& figures, const char* what, const std::string& allowed) {
     if (figures.counted > 0) return;
-    if (allowed.empty()) {
+    if (allowed.empty() && facts.readsMap && facts.radiusVaries) {
+      // A bound over all pixels says nothing of a kernel that is as wide somewhere as the shadow.
+      cell.notes.push_back(
+          fmt::format("none of {} {} pixels counted: the widest kernel reaches over all of them", figures.truth, what));
+    } else if (allowed.empty()) {
       fail(cell, fmt::format("nothing was checked: none of {} {} pixels could be counted", figures.truth, what));
     } else {
       cell.notes.push_back(fmt::format("no {} pixel counted: {}", what, allowed));
@@ -192,25 +203,38 @@ CellReport checkCell(const Case& hardCase, const Stage& stage, const RegisteredT
   };
   compare(again, "in a second, fresh session");
   compare(after, "after another technique ran");
+  if (first.facts.readsMap && !first.facts.comparesDepth) {  // what it reconstructs from averages has other bounds
+    cell.notes.emplace_back("no pixel counted: V is no mean of depth comparisons");
+    return cell;
+  }
   const bool isFloor = technique.declaration.role == TechniqueRole::floor;
   checkClasses(stage, first, isFloor, cell);
-  checkNotEmpty(hardCase, isFloor, cell);
+  checkNotEmpty(hardCase, isFloor, first.facts, cell);
   return cell;
 }
 
 /// Renders all techniques in one session, each with another before it.
-std::vector<Rendering> renderInTurn(Registry& registry, const std::vector<std::string>& techniques, const Case& hardCase) {
-  std::string before = techniques.back();
-  if (techniques.size() == 1) {
+std::vector<Rendering> renderInTurn(Registry& registry, const Selection& selection, const Case& hardCase) {
+  std::string before = selection.techniques.back();
+  if (selection.techniques.size() == 1) {
     for (const std::string& name : registry.names()) {
-      if (name != techniques.front()) before = name;
+      if (name != selection.techniques.front()) before = name;
     }
   }
-  Session session(hardCase.make());
+  Session session(setupOf(hardCase, selection.without));
   renderIn(session, registry, before, hardCase, {});
   std::vector<Rendering> results;
-  for (const std::string& name : techniques) results.push_back(renderIn(session, registry, name, hardCase, {}));
+  for (const std::string& name : selection.techniques) results.push_back(renderIn(session, registry, name, hardCase, {}));
   return results;
+}
+
+/// An unknown technique or defence is told before anything runs.
+void checkNames(Registry& registry, const Selection& selection) {
+  std::vector<const Entry*> entries;
+  for (const std::string& name : selection.techniques) entries.push_back(registry.open(name).entry);
+  Problems problems;
+  for (const std::string& name : selection.without) reportIfUndeclared(name, entries, {"--without", ""}, problems);
+  problems.throwIfAny();
 }
 
 }  // namespace
@@ -224,18 +248,19 @@ std::size_t StabilityReport::count(Outcome outcome) const {
       std::count_if(cells.begin(), cells.end(), [&](const CellReport& c) { return c.outcome == outcome; }));
 }
 
-StabilityReport runStability(Registry& registry, const std::vector<std::string>& techniques,
-                             const std::vector<const Case*>& chosen, const std::function<void(const CellReport&)>& progress) {
-  for (const std::string& name : techniques) registry.open(name);  // an unknown one is told before anything runs
+StabilityReport runStability(Registry& registry, const Selection& selection,
+                             const std::function<void(const CellReport&)>& progress) {
+  checkNames(registry, selection);
+  const std::vector<std::string>& techniques = selection.techniques;
   StabilityReport report;
   if (techniques.empty()) return report;
-  for (const Case* hardCase : chosen) {
+  for (const Case* hardCase : selection.cases) {
     std::optional<Stage> stage;
     std::vector<Rendering> after;
     std::string failure;
     try {
       stage.emplace(stageOf(*hardCase));
-      after = renderInTurn(registry, techniques, *hardCase);
+      after = renderInTurn(registry, selection, *hardCase);
     } catch (const std::exception& error) {
       failure = fmt::format("the session itself fails: {}", error.what());
     }
@@ -244,8 +269,8 @@ StabilityReport runStability(Registry& registry, const std::vector<std::string>&
       if (!failure.empty()) {
         fail(cell, failure);
       } else {
-        const Rendering first = renderAlone(registry, techniques[i], *hardCase, {.checkFinite = true});
-        const Rendering again = renderAlone(registry, techniques[i], *hardCase, {});
+        const Rendering first = renderAlone(registry, techniques[i], *hardCase, selection.without, {.checkFinite = true});
+        const Rendering again = renderAlone(registry, techniques[i], *hardCase, selection.without, {});
         cell = checkCell(*hardCase, *stage, *registry.find(techniques[i]), first, again, after[i]);
       }
       if (progress) progress(cell);

@@ -37,12 +37,18 @@ struct StabilityReport {
   std::size_t count(Outcome outcome) const;
 };
 
-/// Runs each of `techniques` (registered names) through each of `chosen`. A cell renders a fresh session with every target
+/// What the suite is to run.
+struct Selection {
+  std::vector<std::string> techniques;  ///< registered names
+  std::vector<const Case*> cases;
+  std::vector<std::string> without = {};  ///< defences to switch off in all of them
+};
+
+/// Runs each of the techniques through each of the cases. A cell renders a fresh session with every target
 /// checked for NaN and infinity, a second fresh one, and one in which another technique ran before; the three must agree in
 /// every bit. `progress` hears of every cell that is done. Requires a current OpenGL context. Throws InputError for an unknown
-/// technique; what a technique throws fails its cell.
-StabilityReport runStability(Registry& registry, const std::vector<std::string>& techniques,
-                             const std::vector<const Case*>& chosen,
+/// technique or defence; what a technique throws fails its cell.
+StabilityReport runStability(Registry& registry, const Selection& selection,
                              const std::function<void(const CellReport&)>& progress = {});
 
 }  // namespace gnomon::stability

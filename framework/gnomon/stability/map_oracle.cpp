@@ -119,10 +119,12 @@ void MapOracle::compare(const ReceiverPoint& receiver, Beam& beam) const {
   const double quantum = depthQuantum(f, d) * rate;
   const double limit = f.biasLimit * beam.widest * rate;
   const double needed = (slope.x + slope.y) * (f.filterRadiusTexels + 0.5);
-  const double correction = f.biasSlope * steepest + f.biasCurvature * f.filterRadiusTexels * beam.widest * rate;
+  const double curvature = f.biasCurvature * f.filterRadiusTexels * beam.widest * rate;
+  const double slopeBias = f.biasSlope * steepest;
+  const double correction = slopeBias + (f.radiusVaries ? 0.0 : curvature);  // what is sure
   const double rounding = receiver.rounding * rate + (slope.x + slope.y) * std::max(beam.rounding.x, beam.rounding.y);
   beam.leastBias = f.biasConstant * quantum + std::min(correction, limit);
-  beam.mostBias = f.biasConstant * quantum + std::min(correction + 2.0 * rounding, limit);
+  beam.mostBias = f.biasConstant * quantum + std::min(slopeBias + curvature + 2.0 * rounding, limit);
   beam.blur = quantum + rounding + beam.offset * rate;
   const double across = needed + (slope.x + slope.y) * std::max(beam.rounding.x, beam.rounding.y);
   if (!f.receiverPlane) {

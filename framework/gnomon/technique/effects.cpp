@@ -11,6 +11,9 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
+/// Before the name of a defence, in the decisions of a plan.
+const std::string kDefence = "defence ";
+
 /// A decision before its name is known.
 struct Finding {
   bool on;
@@ -165,6 +168,8 @@ std::shared_ptr<const FieldTable> planOverridesTable() {
     field.make = [i](void* object) -> void* { return &static_cast<PlanOverrides*>(object)->toggles[i]; };
     fields.push_back(std::move(field));
   }
+  fields.push_back(list("without", &PlanOverrides::without, nullptr,
+                        "defences to switch off, to see what each is for: `gnomon describe` names a technique's"));
   return std::make_shared<const FieldTable>(std::move(fields));
 }
 
@@ -189,7 +194,23 @@ EffectPlan planEffects(const SceneSurvey& survey, const Light& light, const Came
     }
     plan.decisions.push_back(std::move(decision));
   }
+  for (const std::string& name : overrides.without) {
+    if (!plan.defence(name)) continue;  // named twice
+    plan.decisions.push_back({kDefence + name, false, "switched off by hand: shows what the defence is for", kUnknown});
+  }
   return plan;
+}
+
+bool EffectPlan::defence(const std::string& name) const {
+  return std::none_of(decisions.begin(), decisions.end(), [&](const PlanDecision& d) { return d.name == kDefence + name; });
+}
+
+std::set<std::string> EffectPlan::defencesOff() const {
+  std::set<std::string> off;
+  for (const PlanDecision& d : decisions) {
+    if (d.name.starts_with(kDefence)) off.insert(d.name.substr(kDefence.size()));
+  }
+  return off;
 }
 
 }  // namespace gnomon

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ enum class Toggle : int { automatic, on, off };  // "auto", "on", "off"
 /// What a run config's "plan" says: each decision may be forced.
 struct PlanOverrides {
   std::array<Toggle, kEffects + kRules> toggles{};
+  std::vector<std::string> without = {};  ///< names of defences that are switched off: see technique/defences.h
 
   Toggle& operator[](Effect effect) { return toggles[planIndex(effect)]; }
   Toggle& operator[](Rule rule) { return toggles[planIndex(rule)]; }
@@ -65,7 +67,7 @@ struct PlanOverrides {
 std::shared_ptr<const FieldTable> planOverridesTable();
 
 struct PlanDecision {
-  std::string name;  ///< out of planNames()
+  std::string name;  ///< out of planNames(), or "defence NAME"
   bool on = false;
   std::string reason;
   double value = 0.0;  ///< the number that decided; NaN where nothing was measured, infinite where it has no bound
@@ -75,10 +77,15 @@ struct PlanDecision {
 std::shared_ptr<const FieldTable> planDecisionTable();
 
 struct EffectPlan {
-  std::vector<PlanDecision> decisions;  ///< effects, then rules, in planIndex order; empty: nothing was decided, all is off
+  /// Effects, then rules, in planIndex order, then the defences that are off. Empty: nothing was decided, all effects and
+  /// rules are off.
+  std::vector<PlanDecision> decisions;
 
   bool has(Effect effect) const { return isOn(planIndex(effect)); }
   bool has(Rule rule) const { return isOn(planIndex(rule)); }
+  /// Whether the defence is on, as all are unless somebody switched them off: GNOMON_DEFENCE(name) for code.
+  bool defence(const std::string& name) const;
+  std::set<std::string> defencesOff() const;
 
  private:
   bool isOn(std::size_t index) const { return index < decisions.size() && decisions[index].on; }

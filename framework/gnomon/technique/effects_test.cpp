@@ -193,5 +193,36 @@ TEST(PlanOverrides, AreReadByName) {
   EXPECT_EQ(problems.list()[1].pointer, "/plan/motion");
 }
 
+// --- defences ---
+
+TEST(Defences, AreOnUnlessSwitchedOff) {
+  const EffectPlan all = plan(softScene());
+  EXPECT_TRUE(all.defence("min_variance"));
+  EXPECT_TRUE(all.defencesOff().empty());
+  EXPECT_TRUE(EffectPlan{}.defence("min_variance"));
+}
+
+TEST(Defences, ThoseSwitchedOffStandInThePlanBehindAllElse) {
+  PlanOverrides overrides;
+  overrides.without = {"min_variance", "bias", "min_variance"};
+  const EffectPlan some = plan(softScene(), overrides);
+  EXPECT_FALSE(some.defence("min_variance"));
+  EXPECT_FALSE(some.defence("bias"));
+  EXPECT_TRUE(some.defence("variance"));
+  EXPECT_EQ(some.defencesOff(), (std::set<std::string>{"bias", "min_variance"}));
+  ASSERT_EQ(some.decisions.size(), kEffects + kRules + 2);
+  EXPECT_EQ(some.decisions[kEffects + kRules].name, "defence min_variance");
+  EXPECT_FALSE(some.decisions[kEffects + kRules].on);
+  EXPECT_EQ(decision(some, Rule::skipping).name, "skipping");
+}
+
+TEST(Defences, AreSwitchedOffByAConfigsPlan) {
+  PlanOverrides overrides;
+  Problems problems;
+  readObject(Json{{"without", {"bias"}}}, *planOverridesTable(), &overrides, {"run.json", "/plan"}, problems);
+  EXPECT_TRUE(problems.empty());
+  EXPECT_EQ(overrides.without, std::vector<std::string>{"bias"});
+}
+
 }  // namespace
 }  // namespace gnomon

@@ -103,4 +103,10 @@ const PluginEntries& Libraries::open(const fs::path& library) {
   return entries;
 }
 
+const Entry& Libraries::composed(const std::string& name, const Components& components) {
+  std::unique_ptr<const Entry>& entry = composed_[{name, components}];
+  if (!entry) entry = std::make_unique<const Entry>(composedEntry(name, components));
+  return *entry;
+}
+
 }  // namespace gnomon

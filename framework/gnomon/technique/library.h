@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "gnomon/base/files.h"
+#include "gnomon/technique/compose.h"
 #include "gnomon/technique/entry.h"
 
 namespace gnomon {
@@ -33,9 +35,13 @@ class Libraries {
   /// foreign ABI or a file cut short (its code was not run), a file that is being written, no entries. What failed is tried
   /// again at the next call.
   const PluginEntries& open(const std::filesystem::path& library);
+  /// The entry that those components make; valid as long as this object, and the same one for the same three under a name.
+  /// Throws Error: see composedEntry.
+  const Entry& composed(const std::string& name, const Components& components);
 
  private:
   Copies copies_;
+  std::map<std::pair<std::string, Components>, std::unique_ptr<const Entry>> composed_;
   std::map<std::pair<std::filesystem::path, FileStamp>, const PluginEntries*> opened_;
 };
 

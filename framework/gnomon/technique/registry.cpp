@@ -30,8 +30,8 @@ std::vector<std::filesystem::path> jsonFiles(const std::filesystem::path& direct
 
 Registry::Registry(const std::vector<std::filesystem::path>& directories, std::shared_ptr<Libraries> libraries)
     : libraries_(libraries ? std::move(libraries) : std::make_shared<Libraries>()) {
-  std::map<std::string, std::filesystem::path> firstFile;
-  std::set<std::filesystem::path> seenFiles;  // a folder may be named twice, or lie in another
+  std::map<std::string, std::filesystem::path> firstFile;  // by kind and name
+  std::set<std::filesystem::path> seenFiles;               // a folder may be named twice, or lie in another
   for (const auto& directory : directories) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(directory, ignored)) {
@@ -40,44 +40,54 @@ Registry::Registry(const std::vector<std::filesystem::path>& directories, std::s
       continue;
     }
     for (const auto& path : jsonFiles(directory)) {
-      if (!seenFiles.insert(std::filesystem::weakly_canonical(path, ignored)).second) continue;
-      Problems found;
-      const TechniqueFile file = readTechniqueFile(path, found);
-      problems_.append(found);
-      if (!found.empty()) continue;
-      const std::filesystem::path library = path.parent_path() / (file.library + ".so");
-      if (!std::filesystem::is_regular_file(library, ignored)) {
-        problems_.add(
-            path.string(), "/library",
-            fmt::format("there is no {} beside this file; build the plugin, or correct the name", library.filename().string()));
-        continue;
-      }
-      if (std::filesystem::is_symlink(library, ignored)) {
-        problems_.add(path.string(), "/library",
-                      fmt::format("{} is a symbolic link; libraries are never followed out of their folder",
-                                  library.filename().string()));
-        continue;
-      }
-      for (const TechniqueDeclaration& declaration : file.techniques) {
-        const auto [first, isNew] = firstFile.emplace(declaration.name, path);
-        if (!isNew) {
-          sharedNames_.push_back({declaration.name, first->second, path});
-          const Problem problem = problemOf(sharedNames_.back());
-          problems_.add(problem.file, problem.pointer, problem.message);
-          continue;
-        }
-        techniques_.push_back({declaration, path, library});
-      }
+      if (seenFiles.insert(std::filesystem::weakly_canonical(path, ignored)).second) addFile(path, firstFile);
     }
   }
-  for (const SharedName& shared : sharedNames_)
-    std::erase_if(techniques_, [&](const RegisteredTechnique& t) { return t.declaration.name == shared.name; });
-  std::sort(techniques_.begin(), techniques_.end(),
-            [](const auto& a, const auto& b) { return a.declaration.name < b.declaration.name; });
+  for (const SharedName& shared : sharedNames_) {
+    std::erase_if(techniques_, [&](const auto& t) { return shared.kind == "techniques" && t.declaration.name == shared.name; });
+    std::erase_if(components_, [&](const auto& c) { return shared.kind == "components" && c.declaration.name == shared.name; });
+  }
+  const auto byName = [](const auto& a, const auto& b) { return a.declaration.name < b.declaration.name; };
+  std::sort(techniques_.begin(), techniques_.end(), byName);
+  std::sort(components_.begin(), components_.end(), byName);
+}
+
+void Registry::addFile(const std::filesystem::path& path, std::map<std::string, std::filesystem::path>& firstFile) {
+  Problems found;
+  const TechniqueFile file = readTechniqueFile(path, found);
+  problems_.append(found);
+  if (!found.empty()) return;
+  std::error_code ignored;
+  const std::filesystem::path library =
+      file.library.empty() ? std::filesystem::path() : path.parent_path() / (file.library + ".so");
+  if (!library.empty() && !std::filesystem::is_regular_file(library, ignored)) {
+    return problems_.add(
+        path.string(), "/library",
+        fmt::format("there is no {} beside this file; build the plugin, or correct the name", library.filename().string()));
+  }
+  if (std::filesystem::is_symlink(library, ignored)) {
+    return problems_.add(
+        path.string(), "/library",
+        fmt::format("{} is a symbolic link; libraries are never followed out of their folder", library.filename().string()));
+  }
+  const auto isNew = [&](const std::string& kind, const std::string& name) {
+    const auto [first, fresh] = firstFile.emplace(kind + "/" + name, path);
+    if (fresh) return true;
+    sharedNames_.push_back({kind, name, first->second, path});
+    const Problem problem = problemOf(sharedNames_.back());
+    problems_.add(problem.file, problem.pointer, problem.message);
+    return false;
+  };
+  for (const TechniqueDeclaration& declaration : file.techniques) {
+    if (isNew("techniques", declaration.name)) techniques_.push_back({declaration, path, library});
+  }
+  for (const ComponentDeclaration& declaration : file.components) {
+    if (isNew("components", declaration.name)) components_.push_back({declaration, path, library});
+  }
 }
 
 Problem Registry::problemOf(const SharedName& shared) {
-  return {shared.other.string(), "/techniques/" + shared.name,
+  return {shared.other.string(), "/" + shared.kind + "/" + shared.name,
           fmt::format("'{}' is registered by {} too; neither counts until one is renamed", shared.name, shared.first.string())};
 }
 
@@ -92,7 +102,7 @@ Problems Registry::problemsOf(const std::filesystem::path& file) const {
   }
   for (const SharedName& shared : sharedNames_) {  // told above for the second file alone
     if (!isIt(shared.first)) continue;
-    const Problem problem = problemOf({shared.name, shared.other, shared.first});
+    const Problem problem = problemOf({shared.kind, shared.name, shared.other, shared.first});
     found.add(problem.file, problem.pointer, problem.message);
   }
   return found;
@@ -135,27 +145,74 @@ OpenTechnique Registry::open(const std::string& name) {
           fmt::format("no technique is registered as '{}'{}", name,
                       nearest.empty() ? "; `gnomon list` shows those that are" : "; did you mean '" + nearest + "'?")}});
   }
-  const std::filesystem::path& path = registered->library;
-  const PluginEntries*& library = opened_[path];
-  try {
-    if (library == nullptr) library = &libraries_->open(path);
-  } catch (const Error& error) {
-    throw InputError({{registered->file.string(), "/library", error.what()}});
-  }
+  if (registered->declaration.compose) return openComposed(*registered);
+  const PluginEntries& library = openLibrary(registered->library, registered->file, "/library");
   std::vector<std::string> offered;
-  for (const Entry& entry : library->entries) {
-    if (entry.name == registered->declaration.entry) return {registered, &entry};
+  for (const Entry& entry : library.entries) {
+    if (entry.name == registered->declaration.entry)
+      return {registered, &entry, {registered->file.parent_path()}, {registered->library}};
     offered.push_back(entry.name);
   }
   std::string list;
   for (const std::string& o : offered) list += (list.empty() ? "" : ", ") + o;
-  throw InputError(
-      {{registered->file.string(), "/techniques/" + name + "/entry",
-        fmt::format("{} has no entry '{}'; it has {}", path.filename().string(), registered->declaration.entry, list)}});
+  throw InputError({{registered->file.string(), "/techniques/" + name + "/entry",
+                     fmt::format("{} has no entry '{}'; it has {}", registered->library.filename().string(),
+                                 registered->declaration.entry, list)}});
 }
 
-std::shared_ptr<void> Registry::parameters(const OpenTechnique& technique, const Json& overrides, const Location& where,
-                                           Problems& problems) {
+const PluginEntries& Registry::openLibrary(const std::filesystem::path& library, const std::filesystem::path& file,
+                                           const std::string& pointer) {
+  const PluginEntries*& opened = opened_[library];
+  try {
+    if (opened == nullptr) opened = &libraries_->open(library);
+  } catch (const Error& error) {
+    throw InputError({{file.string(), pointer, error.what()}});
+  }
+  return *opened;
+}
+
+OpenTechnique Registry::openComposed(const RegisteredTechnique& registered) {
+  const TechniqueDeclaration& declaration = registered.declaration;
+  const std::string pointer = "/techniques/" + declaration.name + "/compose";
+  const auto fail = [&](const std::string& where, const std::string& message) {
+    throw InputError({{registered.file.string(), where, message}});
+  };
+  OpenTechnique opened{&registered, nullptr, {registered.file.parent_path()}, {}};
+  Components components{};
+  for (const Axis axis : {Axis::projection, Axis::representation, Axis::footprint}) {
+    const std::string& name = declaration.compose->of(axis);
+    const std::string at = pointer + "/" + axisName(axis);
+    const auto isIt = [&](const RegisteredComponent& c) { return c.declaration.name == name && c.declaration.axis == axis; };
+    const auto found = std::find_if(components_.begin(), components_.end(), isIt);
+    if (found == components_.end()) {
+      std::string list;
+      for (const RegisteredComponent& c : components_) {
+        if (c.declaration.axis == axis) list += (list.empty() ? "" : ", ") + c.declaration.name;
+      }
+      fail(at, fmt::format("no {} is registered as '{}'; there are {}", axisName(axis), name, list.empty() ? "none" : list));
+    }
+    const std::string declared = "/components/" + name;
+    const PluginEntries& library = openLibrary(found->library, found->file, "/library");
+    for (const Component& component : library.components) {
+      if (component.name == name) components[static_cast<std::size_t>(axis)] = &component;
+    }
+    const Component* component = components[static_cast<std::size_t>(axis)];
+    if (component == nullptr || component->axis() != axis) {
+      throw InputError({{found->file.string(), declared,
+                         fmt::format("{} has no {} '{}'", found->library.filename().string(), axisName(axis), name)}});
+    }
+    opened.directories.push_back(found->file.parent_path());
+    opened.libraries.push_back(found->library);
+  }
+  try {
+    opened.entry = &libraries_->composed(declaration.name, components);
+  } catch (const Error& error) {
+    fail(pointer, error.what());
+  }
+  return opened;
+}
+
+std::shared_ptr<void> presetOf(const OpenTechnique& technique, Problems& problems) {
   std::shared_ptr<void> values = technique.entry->makeParameters();
   const RegisteredTechnique& registered = *technique.registered;
   const Json preset = Json::parse(registered.declaration.parametersJsonText, nullptr, false);
@@ -163,6 +220,12 @@ std::shared_ptr<void> Registry::parameters(const OpenTechnique& technique, const
     readObject(preset, *technique.entry->parameters, values.get(),
                {registered.file.string(), "/techniques/" + registered.declaration.name + "/parameters"}, problems);
   }
+  return values;
+}
+
+std::shared_ptr<void> Registry::parameters(const OpenTechnique& technique, const Json& overrides, const Location& where,
+                                           Problems& problems) {
+  std::shared_ptr<void> values = presetOf(technique, problems);
   if (!overrides.is_null()) readObject(overrides, *technique.entry->parameters, values.get(), where, problems);
   return values;
 }

@@ -19,14 +19,26 @@ namespace gnomon {
 struct RegisteredTechnique {
   TechniqueDeclaration declaration;
   std::filesystem::path file;     ///< the JSON
-  std::filesystem::path library;  ///< the shared object beside it
+  std::filesystem::path library;  ///< the shared object beside it; empty where it is composed and its file has none
+};
+
+/// A component of map techniques, as its JSON file declares it.
+struct RegisteredComponent {
+  ComponentDeclaration declaration;
+  std::filesystem::path file;
+  std::filesystem::path library;
 };
 
 /// A technique with all that is needed to make and describe it: its library has been opened.
 struct OpenTechnique {
-  const RegisteredTechnique* registered = nullptr;  ///< the registry's, which outlives what was opened from it
-  const Entry* entry = nullptr;                     ///< the library's: valid to the end of the process
+  const RegisteredTechnique* registered = nullptr;      ///< the registry's, which outlives what was opened from it
+  const Entry* entry = nullptr;                         ///< the library's: valid to the end of the process
+  std::vector<std::filesystem::path> directories = {};  ///< of its shaders, the first to be searched first
+  std::vector<std::filesystem::path> libraries = {};    ///< whose code it runs
 };
+
+/// The entry's defaults and the JSON file's preset. Faults of the preset go to `problems`.
+std::shared_ptr<void> presetOf(const OpenTechnique& technique, Problems& problems);
 
 /// What technique files said when it was made; files that change later need another registry. It outlives every OpenTechnique
 /// that it gave, and the sessions that use them.
@@ -40,6 +52,7 @@ class Registry {
   Registry& operator=(const Registry&) = delete;
 
   const std::vector<RegisteredTechnique>& techniques() const { return techniques_; }
+  const std::vector<RegisteredComponent>& components() const { return components_; }
   const Problems& problems() const { return problems_; }
   /// What speaks against that file: its own faults, and its names that other files register too.
   Problems problemsOf(const std::filesystem::path& file) const;
@@ -56,18 +69,21 @@ class Registry {
   std::shared_ptr<void> parameters(const OpenTechnique& technique, const Json& overrides, const Location& where,
                                    Problems& problems);
 
-  /// Folder of the technique's shaders.
-  static std::filesystem::path directory(const RegisteredTechnique& technique) { return technique.file.parent_path(); }
-
  private:
   struct SharedName {
-    std::string name;
+    std::string kind, name;              ///< "techniques" or "components"
     std::filesystem::path first, other;  ///< files that register it
   };
   static Problem problemOf(const SharedName& shared);
+  void addFile(const std::filesystem::path& path, std::map<std::string, std::filesystem::path>& firstFile);
+  /// Throws InputError at `pointer` of `file`.
+  const PluginEntries& openLibrary(const std::filesystem::path& library, const std::filesystem::path& file,
+                                   const std::string& pointer);
+  OpenTechnique openComposed(const RegisteredTechnique& registered);
 
   std::shared_ptr<Libraries> libraries_;
   std::vector<RegisteredTechnique> techniques_;
+  std::vector<RegisteredComponent> components_;
   Problems problems_;
   std::vector<SharedName> sharedNames_;
   std::map<std::filesystem::path, const PluginEntries*> opened_;  ///< by library

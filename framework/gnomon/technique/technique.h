@@ -31,7 +31,9 @@ struct Frame {
   Light light;  ///< its kind and shape; its pose may change without set-up
   GBuffer gbuffer;
   int maxTextureSize = 0;  ///< of this driver
-  Buffer parameters = {};  ///< the generated block; a cpu pass that uses a uniform parameter names it in CpuPass::after
+  /// The generated block; it changes with every uniform and specialise parameter, and a cpu pass that uses one names it in
+  /// CpuPass::after.
+  Buffer parameters = {};
 };
 
 /// Whether and how a technique can serve here.
@@ -51,8 +53,10 @@ struct Outputs {
 };
 
 /// A technique is made with a reference to its parameters and keeps that reference: they are the session's copy, outlive the
-/// technique and its graph, and the values of those bound as `uniform` change between frames. Whatever else differs makes
-/// another technique, so support and setup may rest on all but them.
+/// technique and its graph, and the values of those bound as `uniform` or `specialise` change between frames. Support and setup
+/// therefore rest on `structure` ones alone. The others reach shaders by themselves, as the block and as constants; a cpu pass
+/// reads them while it runs and names Frame::parameters in CpuPass::after. A parameter that decides which passes there are, or
+/// their sizes, formats or constants, is a structural one.
 class Technique {
  public:
   virtual ~Technique() = default;

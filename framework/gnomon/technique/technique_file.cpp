@@ -25,14 +25,38 @@ std::shared_ptr<const CustomField> presetField() {
   return field;
 }
 
+std::shared_ptr<const FieldTable> compositionTable() {
+  return ParameterTable<Composition>{text("projection", &Composition::projection, "where receivers lie in a map").mandatory(),
+                                     text("representation", &Composition::representation, "what a texel stores").mandatory(),
+                                     text("footprint", &Composition::footprint, "what is averaged").mandatory()}
+      .table();
+}
+
+void checkMaker(const TechniqueDeclaration& technique, const Location& where, Problems& problems) {
+  if (technique.entry.empty() == technique.compose.has_value()) return;
+  problems.add(where.file, where.pointer,
+               technique.compose ? "has both \"entry\" and \"compose\"; allowed: one of them"
+                                 : "has neither \"entry\", a name out of the library, nor \"compose\", three components");
+}
+
+std::shared_ptr<const FieldTable> componentTable() {
+  return ParameterTable<ComponentDeclaration>{
+      text("title", &ComponentDeclaration::title, "what people call it").mandatory(),
+      choice("axis", &ComponentDeclaration::axis, {"projection", "representation", "footprint"}, Binding::structure,
+             "what it is of a composed technique")}
+      .table();
+}
+
 std::shared_ptr<const FieldTable> declarationTable() {
   return ParameterTable<TechniqueDeclaration>{
       text("title", &TechniqueDeclaration::title, "what people call it").mandatory(),
-      text("entry", &TechniqueDeclaration::entry, "the library's entry that makes it").mandatory(),
+      text("entry", &TechniqueDeclaration::entry, "the library's entry that makes it"),
+      object("compose", &TechniqueDeclaration::compose, compositionTable(), "the components that make it, instead of an entry"),
       choice("role", &TechniqueDeclaration::role, {"technique", "reference", "floor"}, Binding::structure,
              "reference: what others are compared with; floor: does no work"),
       custom("parameters", &TechniqueDeclaration::parametersJsonText, presetField(),
              "values that differ from the entry's defaults")}
+      .checked(checkMaker)
       .table();
 }
 
@@ -41,41 +65,55 @@ void checkName(const std::string& name, const Location& where, Problems& problem
     problems.add(where.file, where.pointer, fmt::format("found {}; allowed: {}", shortText(name), kNameRule));
 }
 
-/// The names are keys, so this is no table of its own.
-std::shared_ptr<const CustomField> techniquesField() {
+/// An object of declarations under their names: the names are keys, so this is no table of its own.
+template <class Declaration>
+std::shared_ptr<const CustomField> namedField(std::shared_ptr<const FieldTable> table, const char* wanted) {
   auto field = std::make_shared<CustomField>();
-  field->read = [](const Json& json, void* value, const Location& where, Problems& problems) {
-    auto& techniques = *static_cast<std::vector<TechniqueDeclaration>*>(value);
-    if (!json.is_object() || json.empty())
-      return reportWrong(json, "an object with a technique under each name", where, problems);
-    for (const auto& [name, declaration] : json.items()) {
-      TechniqueDeclaration& technique = techniques.emplace_back();
-      technique.name = name;
+  field->read = [table, wanted](const Json& json, void* value, const Location& where, Problems& problems) {
+    auto& declarations = *static_cast<std::vector<Declaration>*>(value);
+    if (!json.is_object() || json.empty()) return reportWrong(json, wanted, where, problems);
+    for (const auto& [name, one] : json.items()) {
+      Declaration& declaration = declarations.emplace_back();
+      declaration.name = name;
       checkName(name, where.child(name), problems);
-      readObject(declaration, *declarationTable(), &technique, where.child(name), problems);
+      readObject(one, *table, &declaration, where.child(name), problems);
     }
   };
-  field->write = [](const void* value) {
+  field->write = [table](const void* value) {
     Json json = Json::object();
-    for (const TechniqueDeclaration& technique : *static_cast<const std::vector<TechniqueDeclaration>*>(value)) {
-      json[technique.name] = writeObject(*declarationTable(), &technique);
-    }
+    for (const Declaration& declaration : *static_cast<const std::vector<Declaration>*>(value))
+      json[declaration.name] = writeObject(*table, &declaration);
     return json;
   };
-  field->schema = [] {
-    const TechniqueDeclaration blank;
+  field->schema = [table] {
+    const Declaration blank;
     return Json{{"type", "object"},
                 {"minProperties", 1},
                 {"propertyNames", {{"pattern", kNamePattern}}},
-                {"additionalProperties", objectSchema(*declarationTable(), &blank)}};
+                {"additionalProperties", objectSchema(*table, &blank)}};
   };
   return field;
 }
 
+void checkLibrary(const TechniqueFile& file, const Location& where, Problems& problems) {
+  if (file.techniques.empty() && file.components.empty())
+    problems.add(where.file, where.pointer, "has neither \"techniques\" nor \"components\"; one of them is needed");
+  const bool entries = std::any_of(file.techniques.begin(), file.techniques.end(), [](const auto& t) { return !t.compose; });
+  if (file.library.empty() && (entries || !file.components.empty()))
+    problems.add(where.file, where.pointer, "has no \"library\"; entries and components lie in one");
+}
+
 std::shared_ptr<const FieldTable> fileTable() {
   return ParameterTable<TechniqueFile>{
-      text("library", &TechniqueFile::library, "the shared object beside this file, without lib and .so").mandatory(),
-      custom("techniques", &TechniqueFile::techniques, techniquesField(), "the techniques by name").mandatory()}
+      text("library", &TechniqueFile::library,
+           "the shared object beside this file, without lib and .so; needed for entries and components"),
+      custom("components", &TechniqueFile::components,
+             namedField<ComponentDeclaration>(componentTable(), "an object with a component under each name"),
+             "the library's components by name"),
+      custom("techniques", &TechniqueFile::techniques,
+             namedField<TechniqueDeclaration>(declarationTable(), "an object with a technique under each name"),
+             "the techniques by name")}
+      .checked(checkLibrary)
       .table();
 }
 
@@ -105,7 +143,7 @@ TechniqueFile readTechniqueFile(const std::filesystem::path& path, Problems& pro
     text = readFile(path);
   } catch (const Error& error) {
     problems.add("", "", error.what());
-    return {path, {}, {}};
+    return {path, {}, {}, {}};
   }
   return readTechniqueFileText(path, text, problems);
 }

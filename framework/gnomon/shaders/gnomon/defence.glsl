@@ -1,2 +1,3 @@
-// A named guard against a numerical hard case: on, unless a test switches it off to show that the guard is needed.
-#define GNOMON_DEFENCE(name) true
+// GNOMON_DEFENCE(name): a named guard against a numerical hard case. It is `true`, or `false` where tests or `--without name`
+// switch the guard off to show what it is for. It is no macro: gl/program.cpp writes the value into the text that is compiled.
+// Names are declared, with their meaning, in technique/defences.cpp, or in the notes of the plugin's entry.

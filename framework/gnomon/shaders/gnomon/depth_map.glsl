@@ -1,4 +1,4 @@
-// The receiver of this pixel as a depth map sees it, and the comparison with one texel.
+// The receiver of this pixel as the depth map of lightDepth() sees it, and the comparison with one texel.
 // A plugin that includes this inlines depthMapTable(), which gives the bias_* parameters and BIAS_RECEIVER_PLANE.
 #include "gnomon/defence.glsl"
 #include "gnomon/light_map.glsl"
@@ -8,14 +8,20 @@
 uniform sampler2D gPosition;
 uniform sampler2D gNormal;
 uniform sampler2D gMask;
+uniform sampler2D depthMap;
 
-struct Receiver {
+struct MapPoint {
   ivec2 pixel;
-  vec2 uv;       // in the map
-  float depth;   // reversed, as stored
-  vec2 slope;    // of the receiver's plane: depth change per texel
-  float bias;    // towards the light, in stored depth
-  float limit;   // of corrections along the slope, in stored depth
+  vec2 uv;             // in the map
+  float depth;         // reversed, as stored
+  float metres;        // from the light along its axis
+  vec2 slope;          // of the receiver's plane: depth change per texel
+  float bias;          // towards the light, in stored depth; see setFilterRadius
+  float constantBias;  // its parts: without limit,
+  float slopeBias;     // within it,
+  float texel;         // and times the radius: a texel's extent here, metres
+  float rate;          // depth change per metre
+  float limit;         // of corrections along the slope, in stored depth
 };
 
 // Below this N.L the plane through a receiver passes so near the light that float has no digits left for its slope.
@@ -23,9 +29,14 @@ const float kSmallestCosine = 1e-6;
 // Rounding of positions that come through the camera's coordinates: a few units in the last place of a float.
 const float kPositionRounding = 4.0 * 1.1920929e-7;
 
+// A filter of that many texels about the receiver meets surfaces that bend away from its plane: the bias grows with it.
+void setFilterRadius(inout MapPoint r, float texels) {
+  r.bias = r.constantBias + min(r.slopeBias + bias_curvature * texels * r.texel * r.rate, r.limit);
+}
+
 // Leaves pixels outside the receiver mask as the target was cleared: V = 1.
-Receiver receiverInMap() {
-  Receiver r;
+MapPoint mapPoint() {
+  MapPoint r;
   r.pixel = ivec2(gl_FragCoord.xy);
   if (texelFetch(gMask, r.pixel, 0).r == 0.0) discard;
   const vec3 p = texelFetch(gPosition, r.pixel, 0).xyz;
@@ -45,6 +56,7 @@ Receiver receiverInMap() {
   const vec2 image = (q.xy / (mapIsPerspective() ? d : 1.0) - mapScale.zw) * mapScale.xy;
   r.uv = image * 0.5 + 0.5;
   r.depth = mapDepthAt(d);
+  r.metres = d;
 
   // Plane n.x = c. Perspective: 1/d = n.(X, Y, -1) / c, so that z is linear in the map and its slope is exact.
   const vec2 perTexel = 2.0 * mapTexel.xy / mapScale.xy;
@@ -66,12 +78,16 @@ Receiver receiverInMap() {
   const float positionError = kPositionRounding * (length(p) + mapPrecision.w);
   const float rounding = positionError * rate + (abs(r.slope.x) + abs(r.slope.y)) * (positionError / min(texels.x, texels.y) +
                          kPositionRounding * max(mapTexel.z, mapTexel.w));
-  r.bias = bias_constant * quantum + min(rounding + bias_slope * steepest + bias_curvature * mapFilter.x * texel * rate, r.limit);
+  r.constantBias = bias_constant * quantum;
+  r.slopeBias = rounding + bias_slope * steepest;
+  r.texel = texel;
+  r.rate = rate;
+  setFilterRadius(r, mapFilter.x);
   return r;
 }
 
 // 1 if the texel under `uv` holds nothing nearer to the light than the receiver; outside the map nothing is known and all is lit.
-float isLit(sampler2D map, Receiver r, vec2 uv) {
+float isLit(MapPoint r, vec2 uv) {
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return 1.0;
   // Fetched at its centre, a texel is the same one on every sampler, whatever digits that keeps of a coordinate.
   const vec2 centre = floor(uv * mapTexel.zw) + 0.5;
@@ -81,5 +97,8 @@ float isLit(sampler2D map, Receiver r, vec2 uv) {
   depth += r.bias;
   // Beside a receiver's border its plane may be beyond far, where the map holds nothing: that is 0, and no blocker.
   if (GNOMON_DEFENCE(plane_beyond_far)) depth = max(depth, 0.0);
-  return depth >= textureLod(map, centre * mapTexel.xy, 0.0).r ? 1.0 : 0.0;
+  return depth >= textureLod(depthMap, centre * mapTexel.xy, 0.0).r ? 1.0 : 0.0;
 }
+
+// The receiver's distance without its bias, from 0 at near to 1 at far: what representations of distances compare with.
+float unbiasedRange(MapPoint r) { return mapRange(r.metres - r.bias / r.rate); }

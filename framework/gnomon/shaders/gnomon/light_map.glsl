@@ -9,6 +9,7 @@ layout(std140) uniform LightMap {
   vec4 mapTexel;      // 1 / size, size
   vec4 mapPrecision;  // x: 1 perspective; y: quantum of the stored depth; z: 1 relative to it; w: light to camera, metres
   vec4 mapFilter;     // x: radius of the filter, texels
+  vec4 mapSource;     // xy: extent of the source, metres (directional: metres a metre of distance); z: 1 disc; w: roll, radians
 };
 
 bool mapIsPerspective() { return mapPrecision.x != 0.0; }
@@ -21,3 +22,11 @@ float mapDepthRate(float d) { return mapIsPerspective() ? mapDepth.x / (d * d) :
 
 // Extent of a texel at d, metres.
 vec2 mapFootprint(float d) { return 2.0 * mapTexel.xy / mapScale.xy * (mapIsPerspective() ? d : 1.0); }
+
+// Metres along the light's axis of a stored depth.
+float mapMetres(float stored) {
+  return mapIsPerspective() ? mapDepth.x / (stored - mapDepth.y) : (stored - mapDepth.y) / mapDepth.x;
+}
+
+// Metres along the light's axis, from 0 at near to 1 at far.
+float mapRange(float metres) { return (metres - mapDepth.z) / (mapDepth.w - mapDepth.z); }

@@ -1,5 +1,8 @@
 // One technique that breaks the contract in the way its parameter says, and keeps it when that is `none`.
+#include <epoxy/gl.h>
 #include <gnomon/plugin.h>
+
+#include <limits>
 
 #include "gnomon/base/error.h"
 
@@ -32,7 +35,12 @@ enum class Fault : int {
   undeclaredWrite,
   wrongAmount,
   twoWriters,
-  readBeforeWrite
+  readBeforeWrite,
+  notANumber,
+  visibilityOfTwo,
+  leavesState,
+  undeclaredDefence,
+  tooLarge
 };
 
 const std::vector<std::string> kFaults{"none",
@@ -60,7 +68,12 @@ const std::vector<std::string> kFaults{"none",
                                        "undeclared_write",
                                        "wrong_amount",
                                        "two_writers",
-                                       "read_before_write"};
+                                       "read_before_write",
+                                       "not_a_number",
+                                       "visibility_of_two",
+                                       "leaves_state",
+                                       "undeclared_defence",
+                                       "too_large"};
 
 struct Parameters {
   Fault fault = Fault::none;
@@ -68,6 +81,40 @@ struct Parameters {
 
 ParameterTable<Parameters> parameterTable() {
   return {choice("fault", &Parameters::fault, kFaults, Binding::structure, "how the contract is broken")};
+}
+
+/// All that a drawing, clearing or reading framework might take for granted.
+void leaveState() {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, 1, 1);
+  glViewport(0, 0, 1, 1);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_NEVER);
+  glDepthMask(GL_FALSE);
+  glDepthRange(1.0, 0.0);
+  glClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT_AND_BACK);
+  glFrontFace(GL_CW);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ZERO, GL_ZERO);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glEnable(GL_STENCIL_TEST);
+  glStencilFunc(GL_NEVER, 0, 0xff);
+  glEnable(GL_DEPTH_CLAMP);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(100.0f, 100.0f);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_POINT);
+  glEnable(GL_RASTERIZER_DISCARD);
+  glPixelStorei(GL_PACK_ALIGNMENT, 8);
+  glPixelStorei(GL_PACK_ROW_LENGTH, 7);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 7);
+  glPixelStorei(GL_UNPACK_SKIP_PIXELS, 3);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glUseProgram(0);
+  glBindVertexArray(0);
+  glActiveTexture(GL_TEXTURE7);
 }
 
 class Mischief final : public Technique {
@@ -111,6 +158,11 @@ class Mischief final : public Technique {
         return {.visibility = graph.fullscreen("broken", {.shader = "unknown_sampler.frag"})};
       case Fault::unknownBlock:
         return {.visibility = graph.fullscreen("broken", {.shader = "unknown_block.frag"})};
+      case Fault::tooLarge:  // 4 GiB: more than software renderers allocate, and never the output's size
+        return {.visibility = graph.fullscreen(
+                    "huge", {.shader = "lit.frag", .format = Format::rgba32f, .size = glm::ivec2(16384, 16384)})};
+      case Fault::undeclaredDefence:
+        return {.visibility = graph.fullscreen("guarded", {.shader = "undeclared_defence.frag"})};
       case Fault::twoWriters: {
         const Texture shared = graph.texture("shared", info);
         graph.cpu("first", {.writes = {shared}, .run = [](CpuContext&) {}});
@@ -143,6 +195,9 @@ class Mischief final : public Technique {
                          if (fault == Fault::undeclaredRead) context.read(g.normal);
                          if (fault == Fault::undeclaredWrite) context.write(other, lit);
                          if (fault == Fault::wrongAmount) lit.pop_back();
+                         if (fault == Fault::notANumber) lit.back() = std::numeric_limits<float>::quiet_NaN();
+                         if (fault == Fault::visibilityOfTwo) lit.front() = 2.0f;
+                         if (fault == Fault::leavesState) leaveState();
                          context.write(target, lit);
                        }});
     return target;

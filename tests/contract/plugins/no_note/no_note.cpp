@@ -4,6 +4,6 @@
 #include "../leave_trace.h"
 
 extern "C" __attribute__((visibility("default"))) const gnomon::PluginEntries* gnomon_plugin() {
-  static const gnomon::PluginEntries entries;
+  static const gnomon::PluginEntries entries{};
   return &entries;
 }

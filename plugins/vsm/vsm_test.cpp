@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "map_edges.h"
+
+namespace gnomon::test {
+namespace {
+
+/// The mean V where the source is wholly hidden, by 256 rays a pixel.
+double leakInUmbra(const std::string& technique, const std::string& parameters) {
+  const SessionSetup setup = builtinSetup("layers", {240, 180});
+  const Image truth = renderVisibility(setup, "ray_traced", R"({"samples": 256})");
+  const Image v = renderVisibility(setup, technique, parameters);
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < v.data.size(); ++i) {
+    if (truth.data[i] > 0.0f) continue;
+    sum += v.data[i];
+    ++count;
+  }
+  if (count < 100.0) throw Error("no umbra in view");
+  return sum / count;
+}
+
+std::vector<EdgePixel> edge(const std::string& technique, const std::string& parameters) {
+  const EdgeScene scene;
+  ensureContext();
+  Session session(scene.setup());
+  const Slot slot = addSlot(session, technique, parameters);
+  session.frame(slot, {.checkFinite = true});
+  return acrossEdge(session, slot, Across::x);
+}
+
+TEST(Vsm, OfTwoDepthsTheBoundIsTheLitShare) {
+  // Chebyshev's bound is tight for one planar blocker over one planar receiver: V is what the filter covers of lit texels, here
+  // a box of 9 and the two texels of the bilinear lookup: a ramp of 10 texels that is linear but for its ends.
+  const auto row = edge("vsm", R"({"map_size": 512, "width": 9, "bleeding_reduction": 0, "min_variance": 1e-9})");
+  const double texel = 2.0 * std::tan(glm::radians(EdgeScene::kConeDegrees)) * dimensions::kSourceHeight / 512.0;
+  const double centre = EdgeScene::texelOf(EdgeScene::shadowEdge(), dimensions::kSourceHeight, 512);
+  const double snapped = EdgeScene::snappedEdge(512);
+  int judged = 0;
+  for (const EdgePixel& pixel : row) {
+    const double at = (pixel.at - EdgeScene::shadowEdge()) / texel + centre - snapped;  // texels beyond the map's own edge
+    if (std::abs(at) > 3.5) continue;
+    EXPECT_NEAR(pixel.visibility, 0.5 + at / 9.0, 2e-3) << at;
+    ++judged;
+  }
+  EXPECT_GT(judged, 50);
+}
+
+TEST(Vsm, LeaksThroughTheNearerOfTwoBlockersWherePcfDoesNot) {
+  const double leak = leakInUmbra("vsm", R"({"width": 9, "bleeding_reduction": 0})");
+  EXPECT_GT(leak, 0.005);
+  EXPECT_GT(leak, 4.0 * leakInUmbra("pcf", R"({"taps": 9})"));  // what a wide filter brings in over the umbra's border
+}
+
+TEST(Vsm, BleedingReductionDarkensTheLeak) {
+  EXPECT_LT(leakInUmbra("vsm", R"({"width": 25, "bleeding_reduction": 0.3})"),
+            0.7 * leakInUmbra("vsm", R"({"width": 25, "bleeding_reduction": 0})"));
+}
+
+TEST(Vsm, APlaneShadesItselfNowhere) {
+  for (const double elevation : {5.0, 20.0, 60.0}) {
+    const SessionSetup plane = lonePlane(Glancing::spot, elevation);
+    const Image v = renderVisibility(plane, "vsm", R"({"bleeding_reduction": 0})");
+    EXPECT_GT(*std::min_element(v.data.begin(), v.data.end()), 0.9f) << elevation << " degrees";
+  }
+}
+
+TEST(Vsm, HalfFloatsLoseDigitsThatMomentsNeed) {
+  const auto exact = edge("vsm", R"({"map_size": 512, "min_variance": 1e-9})");
+  const auto half = edge("vsm", R"({"map_size": 512, "min_variance": 1e-9, "moments": "rg16f"})");
+  double largest = 0.0;
+  for (std::size_t i = 0; i < exact.size(); ++i)
+    largest = std::max(largest, std::abs(exact[i].visibility - half[i].visibility));
+  EXPECT_GT(largest, 1e-4);
+  EXPECT_LT(largest, 0.2);
+}
+
+TEST(Vsm, TheGaussianIsNarrowerThanTheBoxOfItsWidth) {
+  const auto widthOf = [](const std::vector<EdgePixel>& row) {
+    const auto penumbra = [](const EdgePixel& p) { return p.visibility > 0.1 && p.visibility < 0.9; };
+    return std::count_if(row.begin(), row.end(), penumbra);
+  };
+  EXPECT_LT(widthOf(edge("vsm_gaussian", R"({"map_size": 512, "width": 15})")),
+            0.7 * static_cast<double>(widthOf(edge("vsm", R"({"map_size": 512, "width": 15})"))));
+}
+
+}  // namespace
+}  // namespace gnomon::test
