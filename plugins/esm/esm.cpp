@@ -11,7 +11,7 @@ namespace gnomon {
 namespace {
 
 struct Parameters {
-  float exponent = 200.0f;
+  float exponent = 50.0f;
   float overDarkening = 1.0f;
 };
 

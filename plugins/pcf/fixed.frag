@@ -10,7 +10,7 @@ void main() {
   const vec2 corner = p.uv - 0.5 * float(TAPS - 1) * SPREAD * mapTexel.xy;
   Filtered f = noTaps();
   for (int y = 0; y < TAPS; ++y) {
-    for (int x = 0; x < TAPS; ++x) addTap(f, p, corner + vec2(x, y) * SPREAD * mapTexel.xy, 1.0);
+    for (int x = 0; x < TAPS; ++x) addTap(f, p, corner + vec2(x, y) * SPREAD * mapTexel.xy, y * TAPS + x);
   }
-  visibility = filteredVisibility(f, p);
+  visibility = filteredVisibility(f, p, TAPS * TAPS);
 }

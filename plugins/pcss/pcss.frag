@@ -55,11 +55,12 @@ void main() {
   const vec2 texels = width * mapTexel.zw;
   setFilterRadius(p, 0.5 * max(texels.x, texels.y));
   Filtered f = noTaps();
+  int taps = 0;
   for (int y = 0; y < TAPS; ++y) {
     for (int x = 0; x < TAPS; ++x) {
       const vec2 tap = tapAt(x, y, TAPS);
-      if (inSource(tap)) addTap(f, p, p.uv + turned(tap * width), 1.0);
+      if (inSource(tap)) addTap(f, p, p.uv + turned(tap * width), taps++);
     }
   }
-  visibility = filteredVisibility(f, p);
+  visibility = filteredVisibility(f, p, taps);
 }

@@ -82,15 +82,14 @@ TEST(Planted, VisibilityOfTwoIsOutOfRange) {
 }
 
 TEST(Planted, DivisionByNothingIsNotFinite) {  // 0 / 0 where a receiver is wholly dark
-  PlantedTechnique planted(
-      "pcf", {{"fixed.frag", "= filteredVisibility(f, p);", "= filteredVisibility(f, p) / filteredVisibility(f, p);"}});
+  PlantedTechnique planted("pcf", {{"fixed.frag", "= filteredVisibility(f, p, TAPS * TAPS);", "= f.lit / f.lit;"}});
   const CellReport cell = planted.check("world_moved_1e6");
   EXPECT_TRUE(failsWith(cell, "technique 'planted': pass 'filter': target 'filter' holds"));
 }
 
 TEST(Planted, ShortKernelIsALeakOfItsLastTap) {  // 1/25 of light is 4 per cent: no tolerance hides it
-  PlantedTechnique planted("pcf", {{"fixed.frag", "= filteredVisibility(f, p);",
-                                    "= (filteredVisibility(f, p) * float(TAPS * TAPS) + 1.0) / float(TAPS * TAPS + 1);"}});
+  PlantedTechnique planted(
+      "pcf", {{"fixed.frag", "= filteredVisibility(f, p, TAPS * TAPS);", "= (f.lit + 1.0) / float(TAPS * TAPS + 1);"}});
   EXPECT_TRUE(failsWith(planted.check("world_moved_1e6"), "leak"));
 }
 

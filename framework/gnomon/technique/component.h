@@ -7,7 +7,7 @@
 //                                 or  #define Stored TYPE,  Stored storedOf(vec4 texel),  vec4 texelOf(Stored),
 //                                     Stored combine(Stored a, Stored b, float share)  the mean in which b has that share,
 //                                     float visibilityOf(Stored, MapPoint)
-//   #include "gnomon/filter.glsl" visibilityAt(p, uv), and sums over taps: addTap(), filteredVisibility()
+//   #include "gnomon/filter.glsl" visibilityAt(p, uv), and means over taps: addTap(), filteredVisibility()
 #pragma once
 
 #include <functional>

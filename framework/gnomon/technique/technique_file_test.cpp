@@ -42,7 +42,8 @@ TEST(TechniqueFile, ReportsEveryFault) {
     "b": {"titel": "t", "entry": "e", "role": "floors", "parameters": []}}})"),
       (std::vector<std::string>{
           "f.json: /techniques/Bad Name: found \"Bad Name\"; allowed: a name of a-z, 0-9 and _",
-          "f.json: /techniques/b/titel: unknown key \"titel\"; did you mean \"title\"? allowed: title, entry, role, parameters",
+          "f.json: /techniques/b/titel: unknown key \"titel\"; did you mean \"title\"? allowed: title, entry, compose, role, "
+          "parameters",
           "f.json: /techniques/b/role: unknown choice \"floors\"; did you mean \"floor\"? allowed: technique, reference, floor",
           "f.json: /techniques/b/parameters: found []; allowed: an object of parameter values",
           "f.json: /techniques/b: the key \"title\" is missing: what people call it",
@@ -50,10 +51,18 @@ TEST(TechniqueFile, ReportsEveryFault) {
       }));
 }
 
-TEST(TechniqueFile, CompositionsAreUnknown) {
-  EXPECT_EQ(faults(R"({"library": "l", "techniques": {"a": {"title": "t", "entry": "e", "compose": {}}}})"),
-            (std::vector<std::string>{
-                "f.json: /techniques/a/compose: unknown key \"compose\"; allowed: title, entry, role, parameters"}));
+TEST(TechniqueFile, ACompositionNamesAllThreeComponents) {
+  EXPECT_EQ(
+      faults(R"({"techniques": {"a": {"title": "t", "compose": {"projection": "p", "footprint": "f"}}}})"),
+      (std::vector<std::string>{"f.json: /techniques/a/compose: the key \"representation\" is missing: what a texel stores"}));
+}
+
+TEST(TechniqueFile, ACompositionNeedsNoLibraryAndAComponentDoes) {
+  EXPECT_TRUE(faults(R"({"techniques": {"a": {"title": "t",
+      "compose": {"projection": "p", "representation": "r", "footprint": "f"}}}})")
+                  .empty());
+  EXPECT_EQ(faults(R"({"components": {"a": {"title": "t", "axis": "footprint"}}})").size(), 1U);
+  EXPECT_TRUE(faults(R"({"library": "l", "components": {"a": {"title": "t", "axis": "footprint"}}})").empty());
 }
 
 TEST(TechniqueFile, ANameTwiceInOneFileIsAFault) {
@@ -63,7 +72,8 @@ TEST(TechniqueFile, ANameTwiceInOneFileIsAFault) {
 }
 
 TEST(TechniqueFile, MustNameLibraryAndTechniques) {
-  EXPECT_EQ(faults("{}").size(), 2U);
+  EXPECT_EQ(faults("{}").size(), 1U);
+  EXPECT_EQ(faults(R"({"techniques": {"a": {"title": "t", "entry": "e"}}})").size(), 1U);
   EXPECT_EQ(faults(R"({"library": "l", "techniques": {}})").size(), 1U);
   EXPECT_EQ(faults(R"({"library": "l", "techniques": {"a": 1}})").size(), 1U);
 }
@@ -83,7 +93,7 @@ TEST(TechniqueName, IsLowerCaseDigitsUnderscore) {
 TEST(TechniqueFileSchema, DescribesOneDeclaration) {
   const Json schema = techniqueFileSchema();
   const Json& declaration = schema["properties"]["techniques"]["additionalProperties"];
-  EXPECT_EQ(declaration["required"].dump(), R"(["title","entry"])");
+  EXPECT_EQ(declaration["required"].dump(), R"(["title"])");
   EXPECT_EQ(declaration["properties"]["role"]["default"], "technique");
   EXPECT_EQ(schema["properties"]["techniques"]["propertyNames"]["pattern"], "^[a-z0-9_]+$");
 }

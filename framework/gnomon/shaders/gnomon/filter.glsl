@@ -1,21 +1,16 @@
-// Sums over the taps of a footprint, in whatever the representation may be averaged: comparisons, or what texels store.
+// Means over the taps of a footprint, in whatever the representation may be averaged: comparisons, or what texels store.
 // Needs "projection" and "representation" before it; see technique/component.h.
 
 #ifdef COMPARES
 
-struct Filtered {
-  float lit;
-  float weight;
-};
+struct Filtered { float lit; };
 
-void addTap(inout Filtered f, MapPoint p, vec2 uv, float weight) {
-  f.lit += weight * tapVisibility(p, uv);
-  f.weight += weight;
-}
+Filtered noTaps() { return Filtered(0.0); }
 
-float filteredVisibility(Filtered f, MapPoint p) { return f.lit / f.weight; }
+// One of taps that weigh alike; `before` are there already.
+void addTap(inout Filtered f, MapPoint p, vec2 uv, int before) { f.lit += tapVisibility(p, uv); }
 
-Filtered noTaps() { return Filtered(0.0, 0.0); }
+float filteredVisibility(Filtered f, MapPoint p, int taps) { return f.lit / float(taps); }
 
 #else
 
@@ -26,24 +21,17 @@ Stored fetchStored(sampler2D map, ivec2 texel) {
   return storedOf(texelFetch(map, clamp(texel, ivec2(0), textureSize(map, 0) - 1), 0));
 }
 
-struct Filtered {
-  Stored mean;
-  float weight;
-};
+struct Filtered { Stored mean; };
 
-void addStored(inout Filtered f, Stored s, float weight) {
-  f.weight += weight;
+Filtered noTaps() { return Filtered(storedOf(vec4(0.0))); }
+
+void addTap(inout Filtered f, MapPoint p, vec2 uv, int before) {
+  const Stored s = fetchStored(storedMap, ivec2(floor(uv * mapTexel.zw)));
   // The first is the mean: it must not meet what nothing was written to.
-  f.mean = f.weight == weight ? s : combine(f.mean, s, weight / f.weight);
+  f.mean = before == 0 ? s : combine(f.mean, s, 1.0 / float(before + 1));
 }
 
-void addTap(inout Filtered f, MapPoint p, vec2 uv, float weight) {
-  addStored(f, fetchStored(storedMap, ivec2(floor(uv * mapTexel.zw))), weight);
-}
-
-float filteredVisibility(Filtered f, MapPoint p) { return visibilityOf(f.mean, p); }
-
-Filtered noTaps() { return Filtered(storedOf(vec4(0.0)), 0.0); }
+float filteredVisibility(Filtered f, MapPoint p, int taps) { return visibilityOf(f.mean, p); }
 
 // Bilinear, in the representation's own domain: hardware would average in another.
 Stored storedAt(vec2 uv) {
@@ -61,6 +49,6 @@ Stored storedAt(vec2 uv) {
 // What one texel says.
 float visibilityAt(MapPoint p, vec2 uv) {
   Filtered f = noTaps();
-  addTap(f, p, uv, 1.0);
-  return filteredVisibility(f, p);
+  addTap(f, p, uv, 0);
+  return filteredVisibility(f, p, 1);
 }
