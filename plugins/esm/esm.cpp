@@ -16,8 +16,8 @@ struct Parameters {
 };
 
 ParameterTable<Parameters> parameterTable() {
-  return {real("exponent", &Parameters::exponent, {.min = 1.0, .max = 5000.0, .unit = "per depth range"}, Binding::uniform,
-               "c: how steep the step is; small leaks at contacts, large shows noise on slopes"),
+  return {real("exponent", &Parameters::exponent, {.min = 1.0, .max = 5000.0, .unit = "per depth range", .logarithmic = true},
+               Binding::uniform, "c: how steep the step is; small leaks at contacts, large shows noise on slopes"),
           real("over_darkening", &Parameters::overDarkening, {.min = 0.25, .max = 16.0}, Binding::uniform,
                "k: V^k is shown; above 1 it darkens leaks and narrows penumbrae")};
 }

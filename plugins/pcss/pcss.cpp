@@ -23,8 +23,8 @@ ParameterTable<Parameters> parameterTable() {
   return {integer("search_taps", &Parameters::searchTaps, {.min = 1, .max = 63}, Binding::specialise,
                   "N of the N x N texels that the blocker search reads"),
           integer("taps", &Parameters::taps, {.min = 1, .max = 63}, Binding::specialise, "N of the filter's N x N taps"),
-          real("widest", &Parameters::widest, {.min = 1.0, .max = 4096.0, .unit = "texels"}, Binding::uniform,
-               "neither search nor filter is wider")};
+          real("widest", &Parameters::widest, {.min = 1.0, .max = 4096.0, .unit = "texels", .logarithmic = true},
+               Binding::uniform, "neither search nor filter is wider")};
 }
 
 class Pcss final : public Footprint {

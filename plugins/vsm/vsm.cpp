@@ -20,8 +20,9 @@ struct Parameters {
 
 ParameterTable<Parameters> parameterTable() {
   return {choice("moments", &Parameters::moments, {"rg16f", "rg32f"}, Binding::structure, "how moments are stored"),
-          real("min_variance", &Parameters::minVariance, {.min = 0.0, .max = 1.0, .unit = "of the squared depth range"},
-               Binding::uniform, "least variance: guards against cancellation and against texels on sloped receivers"),
+          real("min_variance", &Parameters::minVariance,
+               {.min = 1e-12, .max = 1.0, .unit = "of the squared depth range", .logarithmic = true}, Binding::uniform,
+               "least variance: guards against cancellation and against texels on sloped receivers"),
           real("bleeding_reduction", &Parameters::bleedingReduction, {.min = 0.0, .max = 0.95}, Binding::uniform,
                "V below it counts as dark, what is above is stretched: darkens leaks, and narrows penumbrae")};
 }

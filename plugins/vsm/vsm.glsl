@@ -11,7 +11,7 @@ float visibilityOf(Stored moments, MapPoint p) {
   const float t = unbiasedRange(p) - 0.5;
   if (t <= moments.x) return 1.0;
   // The difference cancels: what is left of it may be rounding, and negative.
-  const float variance = max(moments.y - moments.x * moments.x, max(min_variance, 1e-12));
+  const float variance = max(moments.y - moments.x * moments.x, min_variance);
   const float beyond = t - moments.x;
   const float bound = variance / (variance + beyond * beyond);
   return clamp((bound - bleeding_reduction) / (1.0 - bleeding_reduction), 0.0, 1.0);

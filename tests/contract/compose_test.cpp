@@ -84,6 +84,13 @@ TEST_F(Composed, WhatMakesNoSenseIsRefusedWithTheReason) {
   EXPECT_THAT(why, HasSubstr("can only be compared texel by texel"));
 }
 
+TEST_F(Composed, AdmissibleComponentsLeaveOutWhatMakesNoSense) {
+  Registry& registry = with("single", "vsm", "prefiltered");
+  const RegisteredTechnique& mine = *registry.find("mine");
+  EXPECT_THAT(registry.admissible(mine, Axis::representation), ::testing::ElementsAre("esm", "vsm"));  // depth is compared
+  EXPECT_THAT(registry.admissible(mine, Axis::footprint), ::testing::ElementsAre("fixed", "nearest", "pcss", "prefiltered"));
+}
+
 TEST_F(Composed, AFileWithBothOrNeitherMakerIsWrong) {
   folder_.write("techniques/mine.json", R"({"techniques": {"mine": {"title": "Mine"}}})");
   const Registry neither({folder_ / "techniques"});

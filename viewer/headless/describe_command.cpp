@@ -118,6 +118,12 @@ int describeCommand(const CommonOptions& common, const std::string& name) {
                    {"summary", entry.notes.summary},
                    {"parameters", parametersJson(*entry.parameters, values.get())},
                    {"schema", schemaOf(*entry.parameters, values.get())}};
+    if (declared.compose) {
+      for (const Axis axis : kAxes) {
+        described["components"][axisName(axis)] = {{"name", declared.compose->of(axis)},
+                                                   {"admissible", registry.admissible(*technique.registered, axis)}};
+      }
+    }
     if (probe) described.update(json(*probe));
     fmt::print("{}\n", described.dump(2));
     return 0;
@@ -126,6 +132,12 @@ int describeCommand(const CommonOptions& common, const std::string& name) {
   if (!entry.notes.summary.empty()) fmt::print("  {}\n", entry.notes.summary);
   if (!entry.notes.paper.empty()) fmt::print("  {}\n", entry.notes.paper);
   fmt::print("  role {}, {}\n", roleName(declared.role), technique.registered->file.string());
+  if (declared.compose) {
+    fmt::print("\ncomponents, and what could stand in their place\n");
+    for (const Axis axis : kAxes)
+      fmt::print("  {:<15} {:<12} of {}\n", axisName(axis), declared.compose->of(axis),
+                 fmt::join(registry.admissible(*technique.registered, axis), ", "));
+  }
   printParameters(*entry.parameters, values.get());
   if (probe) print(*probe);
   return 0;

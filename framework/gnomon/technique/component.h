@@ -10,6 +10,7 @@
 //   #include "gnomon/filter.glsl" visibilityAt(p, uv), and means over taps: addTap(), filteredVisibility()
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -82,6 +83,7 @@ class Footprint {
 };
 
 enum class Axis : int { projection, representation, footprint };
+inline constexpr std::array<Axis, 3> kAxes{Axis::projection, Axis::representation, Axis::footprint};
 
 struct ComponentTraits {
   std::string shader = {};  ///< projection, representation: what footprints include; beside the component's JSON

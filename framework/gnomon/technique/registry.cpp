@@ -171,45 +171,65 @@ const PluginEntries& Registry::openLibrary(const std::filesystem::path& library,
   return *opened;
 }
 
+const RegisteredComponent& Registry::component(const std::string& name, Axis axis, const Location& where) const {
+  std::string list;
+  for (const RegisteredComponent& c : components_) {
+    if (c.declaration.axis != axis) continue;
+    if (c.declaration.name == name) return c;
+    list += (list.empty() ? "" : ", ") + c.declaration.name;
+  }
+  throw InputError(
+      {{where.file, where.pointer,
+        fmt::format("no {} is registered as '{}'; there are {}", axisName(axis), name, list.empty() ? "none" : list)}});
+}
+
+const Component& Registry::openComponent(const RegisteredComponent& registered) {
+  const auto& [name, title, axis] = registered.declaration;
+  for (const Component& component : openLibrary(registered.library, registered.file, "/library").components) {
+    if (component.name == name && component.axis() == axis) return component;
+  }
+  throw InputError({{registered.file.string(), "/components/" + name,
+                     fmt::format("{} has no {} '{}'", registered.library.filename().string(), axisName(axis), name)}});
+}
+
 OpenTechnique Registry::openComposed(const RegisteredTechnique& registered) {
   const TechniqueDeclaration& declaration = registered.declaration;
-  const std::string pointer = "/techniques/" + declaration.name + "/compose";
-  const auto fail = [&](const std::string& where, const std::string& message) {
-    throw InputError({{registered.file.string(), where, message}});
-  };
+  const Location where{registered.file.string(), "/techniques/" + declaration.name + "/compose"};
   OpenTechnique opened{&registered, nullptr, {registered.file.parent_path()}, {}};
   Components components{};
-  for (const Axis axis : {Axis::projection, Axis::representation, Axis::footprint}) {
-    const std::string& name = declaration.compose->of(axis);
-    const std::string at = pointer + "/" + axisName(axis);
-    const auto isIt = [&](const RegisteredComponent& c) { return c.declaration.name == name && c.declaration.axis == axis; };
-    const auto found = std::find_if(components_.begin(), components_.end(), isIt);
-    if (found == components_.end()) {
-      std::string list;
-      for (const RegisteredComponent& c : components_) {
-        if (c.declaration.axis == axis) list += (list.empty() ? "" : ", ") + c.declaration.name;
-      }
-      fail(at, fmt::format("no {} is registered as '{}'; there are {}", axisName(axis), name, list.empty() ? "none" : list));
-    }
-    const std::string declared = "/components/" + name;
-    const PluginEntries& library = openLibrary(found->library, found->file, "/library");
-    for (const Component& component : library.components) {
-      if (component.name == name) components[static_cast<std::size_t>(axis)] = &component;
-    }
-    const Component* component = components[static_cast<std::size_t>(axis)];
-    if (component == nullptr || component->axis() != axis) {
-      throw InputError({{found->file.string(), declared,
-                         fmt::format("{} has no {} '{}'", found->library.filename().string(), axisName(axis), name)}});
-    }
-    opened.directories.push_back(found->file.parent_path());
-    opened.libraries.push_back(found->library);
+  for (const Axis axis : kAxes) {
+    const RegisteredComponent& found = component(declaration.compose->of(axis), axis, where.child(axisName(axis)));
+    components[static_cast<std::size_t>(axis)] = &openComponent(found);
+    opened.directories.push_back(found.file.parent_path());
+    opened.libraries.push_back(found.library);
   }
   try {
     opened.entry = &libraries_->composed(declaration.name, components);
   } catch (const Error& error) {
-    fail(pointer, error.what());
+    throw InputError({{where.file, where.pointer, error.what()}});
   }
   return opened;
+}
+
+std::vector<std::string> Registry::admissible(const RegisteredTechnique& composed, Axis axis) {
+  Components components{};
+  for (const Axis other : kAxes) {
+    if (other != axis)
+      components[static_cast<std::size_t>(other)] =
+          &openComponent(component(composed.declaration.compose->of(other), other, {}));
+  }
+  std::vector<std::string> names;
+  for (const RegisteredComponent& candidate : components_) {
+    if (candidate.declaration.axis != axis) continue;
+    try {
+      components[static_cast<std::size_t>(axis)] = &openComponent(candidate);
+      composedEntry(composed.declaration.name, components);
+      names.push_back(candidate.declaration.name);
+    } catch (const Error&) {
+      continue;  // it cannot be had, or makes no sense with the others
+    }
+  }
+  return names;
 }
 
 std::shared_ptr<void> presetOf(const OpenTechnique& technique, Problems& problems) {

@@ -65,6 +65,10 @@ class Registry {
   /// or half-written library, foreign ABI (its code was not run), no such entry.
   OpenTechnique open(const std::string& name);
 
+  /// Components that could stand in the place of a composed technique's own on that axis. Throws InputError where the other
+  /// two cannot be had.
+  std::vector<std::string> admissible(const RegisteredTechnique& composed, Axis axis);
+
   /// Defaults, then the JSON file's preset, then `overrides`. Faults go to `problems` under `where`.
   std::shared_ptr<void> parameters(const OpenTechnique& technique, const Json& overrides, const Location& where,
                                    Problems& problems);
@@ -80,6 +84,9 @@ class Registry {
   const PluginEntries& openLibrary(const std::filesystem::path& library, const std::filesystem::path& file,
                                    const std::string& pointer);
   OpenTechnique openComposed(const RegisteredTechnique& registered);
+  /// Throws InputError at `where`, with the names that there are.
+  const RegisteredComponent& component(const std::string& name, Axis axis, const Location& where) const;
+  const Component& openComponent(const RegisteredComponent& registered);
 
   std::shared_ptr<Libraries> libraries_;
   std::vector<RegisteredTechnique> techniques_;
