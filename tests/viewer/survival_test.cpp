@@ -29,34 +29,34 @@ bool hasNoTrouble(const Json& frame) {
 }
 
 TEST_F(ViewerWindow, ABrokenShaderLeavesTheLastGoodPictureAndSaysWhy) {
-  const std::filesystem::path plugin = copyOfPlugin("shadow_map", "my_map");
+  const std::filesystem::path plugin = copyOfPlugin("unshadowed", "my_map");
   folder_.write("my.json", kMine);
   Viewer viewer(display_.name(), folder_.path(), on("my.json", withTechniques()));
   viewer.waitForWindow();
   viewer.keys({"h"});
   const std::string before = screenshot(viewer);
-  const std::string shader = readFile(plugin / "shadow_map.frag");
-  overwrite(plugin / "shadow_map.frag", "this is no shader\n");
-  ASSERT_TRUE(viewer.untilFrame([](const Json& f) { return hasTrouble(f, "my_map"); })) << viewer.lastFrame();
-  EXPECT_THAT(viewer.lastFrame()["troubles"]["my_map"].get<std::string>(), HasSubstr("shadow_map.frag"));
+  const std::string shader = readFile(plugin / "unshadowed.frag");
+  overwrite(plugin / "unshadowed.frag", "this is no shader\n");
+  ASSERT_TRUE(viewer.untilFrame([](const Json& f) { return hasTrouble(f, "1 my_map"); })) << viewer.lastFrame();
+  EXPECT_THAT(viewer.lastFrame()["troubles"]["1 my_map"].get<std::string>(), HasSubstr("unshadowed.frag"));
   EXPECT_TRUE(screenshot(viewer) == before);
-  overwrite(plugin / "shadow_map.frag", shader);
+  overwrite(plugin / "unshadowed.frag", shader);
   EXPECT_TRUE(viewer.untilFrame(hasNoTrouble)) << viewer.lastFrame();
   EXPECT_TRUE(screenshot(viewer) == before);
 }
 
 TEST_F(ViewerWindow, ABrokenLibraryLeavesTheLastGoodPictureAndARebuiltOneIsTaken) {
-  const std::filesystem::path plugin = copyOfPlugin("shadow_map", "my_map");
+  const std::filesystem::path plugin = copyOfPlugin("unshadowed", "my_map");
   folder_.write("my.json", kMine);
-  const std::string library = readFile(plugin / "shadow_map.so");
+  const std::string library = readFile(plugin / "unshadowed.so");
   Viewer viewer(display_.name(), folder_.path(), on("my.json", withTechniques()));
   viewer.waitForWindow();
   viewer.keys({"h"});
   const std::string before = screenshot(viewer);
-  overwrite(plugin / "shadow_map.so", library.substr(0, library.size() / 2));
+  overwrite(plugin / "unshadowed.so", library.substr(0, library.size() / 2));
   ASSERT_TRUE(viewer.untilFrame([](const Json& f) { return hasTrouble(f, "config"); })) << viewer.lastFrame();
   EXPECT_TRUE(screenshot(viewer) == before);
-  overwrite(plugin / "shadow_map.so", library);
+  overwrite(plugin / "unshadowed.so", library);
   EXPECT_TRUE(viewer.untilFrame(hasNoTrouble)) << viewer.lastFrame();
   EXPECT_TRUE(screenshot(viewer) == before);
 }
@@ -94,15 +94,20 @@ TEST_F(ViewerWindow, AChangedConfigIsTakenAndABrokenOneChangesNothing) {
 }
 
 TEST_F(ViewerWindow, APresetChangedInATechniqueFileIsTaken) {
-  const std::filesystem::path plugin = copyOfPlugin("shadow_map", "my_map");
+  Json file = Json::parse(R"({"techniques": {"my_map": {"title": "Mine", "parameters": {"map_size": 128},
+      "compose": {"projection": "single", "representation": "depth", "footprint": "nearest"}}}})");
+  folder_.write("techniques/my_map.json", file.dump());
   folder_.write("my.json", kMine);
   Viewer viewer(display_.name(), folder_.path(), on("my.json", withTechniques()));
   viewer.waitForWindow();
-  Json file = Json::parse(readFile(plugin / "shadow_map.json"));
   file["techniques"]["my_map"]["parameters"]["map_size"] = 64;
-  overwrite(plugin / "shadow_map.json", file.dump());
-  ASSERT_TRUE(viewer.untilFrame([](const Json& f) { return f["message"].get<std::string>().find("files changed") == 0; }));
-  EXPECT_EQ(savedConfig(viewer)["techniques"][0]["parameters"]["map_size"], 64);
+  overwrite(folder_ / "techniques/my_map.json", file.dump());
+  ASSERT_TRUE(viewer.untilFrame([](const Json& f) { return f["message"] == "loaded again"; })) << viewer.lastFrame();
+  // The preset is the technique's own: the saved config names it alone, and it is what the runner takes.
+  const Json saved = savedConfig(viewer);
+  EXPECT_FALSE(saved["techniques"][0].contains("parameters")) << saved.dump();
+  viewer.keys({"plus"});
+  EXPECT_EQ(savedConfig(viewer)["techniques"][0]["parameters"]["map_size"], 128);
 }
 
 TEST_F(ViewerWindow, EveryMisbehavingPluginIsSurvivedWithAMessage) {

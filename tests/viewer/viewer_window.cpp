@@ -25,8 +25,10 @@ ViewerWindow::ViewerWindow() {
 }
 
 std::vector<std::string> ViewerWindow::on(const std::string& subject, const std::vector<std::string>& more) const {
-  std::vector<std::string> words{subject, "--size", "320", "240"};
-  if (std::find(more.begin(), more.end(), "--frame-budget") == more.end()) words.insert(words.end(), {"--frame-budget", "0"});
+  const auto names = [&](const char* option) { return std::find(more.begin(), more.end(), option) != more.end(); };
+  std::vector<std::string> words{subject};
+  if (!names("--size")) words.insert(words.end(), {"--size", "320", "240"});
+  if (!names("--frame-budget")) words.insert(words.end(), {"--frame-budget", "0"});
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -74,6 +76,7 @@ std::string ViewerWindow::screenshot(const Viewer& viewer) const {
 }
 
 std::string ViewerWindow::runnersPicture(const std::string& config) const {
+  std::filesystem::remove_all(folder_ / "render");
   const Outcome outcome =
       gnomonProgram({"render", (folder_ / config).string(), "--out", (folder_ / "render").string(), "--no-cache"});
   EXPECT_EQ(outcome.exitCode, 0) << outcome.all();
@@ -96,6 +99,7 @@ std::filesystem::path ViewerWindow::copyOfPlugin(const std::string& plugin, cons
   Json file = Json::parse(readFile(to / (plugin + ".json")));
   Json technique = file["techniques"][plugin];
   file["techniques"] = Json::object();
+  technique.erase("role");  // the installed one has it
   file["techniques"][as] = technique;
   writeFileAtomically(to / (plugin + ".json"), file.dump());
   return to;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "display.h"
+#include "picture.h"
 #include "temporary_folder.h"
 
 namespace gnomon::test {
@@ -15,7 +16,7 @@ class ViewerWindow : public ::testing::Test {
  protected:
   ViewerWindow();
 
-  /// 320x240, never at lower resolution, and without the error's background work unless `more` says otherwise.
+  /// 320x240 and never at lower resolution unless `more` says otherwise.
   std::vector<std::string> on(const std::string& subject, const std::vector<std::string>& more = {}) const;
   /// Plays a script to its end; fails when the viewer does.
   void play(const std::string& script, const std::string& subject = "config.json", const std::vector<std::string>& more = {});
@@ -32,8 +33,9 @@ class ViewerWindow : public ::testing::Test {
   std::string runnersPicture(const std::string& config) const;
   std::string bytes(const std::string& file) const;
   Json json(const std::string& file) const;
+  Picture picture(const std::string& file) const { return readPicture(folder_ / file); }
 
-  /// A copy of a plugin's folder in techniques/NAME whose one technique is called `as`.
+  /// A copy of a plugin's folder in techniques/NAME whose one technique, an entry of its own, is called `as`.
   std::filesystem::path copyOfPlugin(const std::string& plugin, const std::string& as) const;
   std::vector<std::string> withTechniques() const { return {"--technique-dir", (folder_ / "techniques").string()}; }
 

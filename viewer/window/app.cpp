@@ -15,6 +15,8 @@ namespace gnomon {
 namespace {
 
 constexpr double kFileCheckSeconds = 0.5;
+constexpr double kSaidSeconds = 6.0;
+constexpr double kOpenFailedSeconds = 20.0;
 constexpr double kResizeSeconds = 0.15;  // a window that is being dragged is not set up at every size
 constexpr std::size_t kFrameHistory = 120;
 constexpr int kLowest = 4;  // greatest reduction
@@ -25,6 +27,7 @@ App::App(const std::filesystem::path& subject, AppOptions options)
     : options_(std::move(options)), libraries_(std::make_shared<Libraries>(Libraries::Copies::always)) {
   adopt(loadDocument(subject, 0, options_.techniqueDirectories, libraries_));
   resetView();
+  sinceMoved_ = kRestSeconds;  // nothing has moved yet
   overlay_ = std::make_unique<Overlay>(15.0f);
   presenter_ = std::make_unique<Presenter>();
 }
@@ -39,26 +42,43 @@ void App::resize(glm::ivec2 size, float scale) {
   dirty_ = true;
   if (size.x <= 0 || size.y <= 0) return;
   overlay_->setFontPixels(15.0f * scale);
+  cannotRebuild_ = false;
   if (stages_.empty()) rebuildStages();
 }
 
-void App::rebuildStages() {
+void App::rebuildStages(bool otherwiseKeep) {
+  for (ViewerTechnique& technique : document_.techniques) technique.forgetError();
   reference_.reset();
   referenceFault_.clear();
-  stages_.clear();
-  lastGood_.reset();
-  stageSize_ = size_;
-  for (ViewerTechnique& technique : document_.techniques) technique.error.reset();
   dirty_ = true;
+  std::map<int, Staged> before = std::exchange(stages_, {});
+  const glm::ivec2 sizeBefore = std::exchange(stageSize_, size_);
   if (size_.x <= 0 || size_.y <= 0) return;
+  std::string fault;
   try {
-    plan_ = stageOf(1).session().plan();
+    Stage& stage = stageOf(1);
+    if (otherwiseKeep && lastGood_ && !stage.render(*lastGood_, document_.techniques[*lastGood_].technique, false))
+      fault = stage.entry(*lastGood_).failure;
+    plan_ = stage.session().plan();
     settled_ = true;
-    trouble("scene", "");
   } catch (const std::exception& error) {
-    stages_.clear();
-    trouble("scene", error.what());
+    fault = error.what();
   }
+  trouble("set-up", fault);
+  if (fault.empty()) {
+    if (!otherwiseKeep) lastGood_.reset();
+    return;
+  }
+  stages_.clear();
+  cannotRebuild_ = true;
+  if (otherwiseKeep) {
+    stages_ = std::move(before);
+    stageSize_ = sizeBefore;
+  }
+}
+
+std::string App::labelOf(std::size_t index) const {
+  return fmt::format("{} {}", index + 1, document_.techniques[index].technique.name());
 }
 
 Stage& App::stageOf(int reduction) {
@@ -66,6 +86,7 @@ Stage& App::stageOf(int reduction) {
   if (!staged.stage) {
     const glm::ivec2 size = glm::max(stageSize_ / reduction, glm::ivec2(1));
     SessionSetup setup{document_.run.scene, pose_.light, pose_.camera, size, document_.run.config.plan, {}};
+    setup.sharePasses = true;  // two techniques that ask for the same depth map get one
     const std::vector<glm::dmat4> now = worlds();
     for (std::size_t i = 0; i < now.size(); ++i) setup.scene.instances[i].world = now[i];
     staged.stage = std::make_unique<Stage>(std::move(setup), document_.techniques.size());
@@ -101,7 +122,7 @@ std::vector<glm::dmat4> App::worlds() const {
 
 void App::moved(Moved what) {
   ++versions_[static_cast<std::size_t>(what)];
-  for (ViewerTechnique& technique : document_.techniques) technique.error.reset();
+  for (ViewerTechnique& technique : document_.techniques) technique.forgetError();
   sinceMoved_ = 0.0;
   settled_ = false;
   dirty_ = true;
@@ -125,8 +146,10 @@ void App::settle() {
 }
 
 void App::trouble(const std::string& what, const std::string& text) {
+  const auto known = troubles_.find(what);
+  if (text.empty() ? known == troubles_.end() : known != troubles_.end() && known->second == text) return;
   if (text.empty()) {
-    troubles_.erase(what);
+    troubles_.erase(known);
   } else {
     troubles_[what] = text;
   }
@@ -138,7 +161,15 @@ bool App::advance(double seconds) {
   sinceResized_ += seconds;
   fly(seconds);
   if (playing_) animate(seconds);
-  if (size_ != stageSize_ && sinceResized_ > kResizeSeconds && size_.x > 0 && size_.y > 0) rebuildStages();
+  sinceSaid_ += seconds;
+  if (!message_.empty() && sinceSaid_ > kSaidSeconds) {
+    message_.clear();
+    dirty_ = true;
+  }
+  sinceOpenFailed_ += seconds;
+  if (sinceOpenFailed_ > kOpenFailedSeconds) trouble("opening", "");
+  const bool outgrown = size_ != stageSize_ && size_.x > 0 && size_.y > 0;
+  if (outgrown && !cannotRebuild_ && sinceResized_ > kResizeSeconds) rebuildStages(true);
   if (!settled_ && !moving()) settle();
   sinceFileCheck_ += seconds;
   if (sinceFileCheck_ > kFileCheckSeconds) {
@@ -172,16 +203,23 @@ PresentView App::view(Stage& stage, std::size_t shown, Panels& panels) {
   PresentView view{.left = &session.shadedTexture(slot)};
   const auto textures = session.textures(slot);
   if (texture_ >= static_cast<int>(textures.size())) texture_ = -1;
+  compared_ = false;
   if (texture_ >= 0) {
     panels.lookInto(*textures[static_cast<std::size_t>(texture_)], view);
-  } else if (difference_) {
-    if (const TextureResource* right = other(stage, true))
-      view = {.mode = PresentMode::difference, .left = &session.visibilityTexture(slot), .right = right};
+    return view;
+  }
+  // Nothing is compared with what stands in for a technique that shows nothing.
+  if (!compares() || compiling_ || shown != shown_) return view;
+  const TextureResource* with = other(stage, difference_);
+  compared_ = with != nullptr;
+  if (!compared_) return view;
+  if (difference_) {
+    view = {.mode = PresentMode::difference, .left = &session.visibilityTexture(slot), .right = with};
   } else if (split_) {
-    view.right = other(stage, false);
+    view.right = with;
     view.divider = divider_;
-  } else if (holdOther_ && againstReference_) {
-    if (const TextureResource* reference = other(stage, false)) view.left = reference;
+  } else {
+    view.left = with;
   }
   return view;
 }
@@ -198,10 +236,13 @@ void App::draw() {
   ++frames_;
   Panels panels(*this);
   shown_ = holdOther_ && !againstReference_ ? before_ : current_;
+  overlay_->setFontPixels(showHelp_ ? panels.fittingHelp(15.0f * scale_) : 15.0f * scale_);
   if (!stages_.empty()) {
     Stage& stage = stageOf(moving() ? reduction_ : 1);
     // A first use compiles, which takes a while: the picture before stays for a frame, with a line that says so.
-    const bool cold = stage.isCold(shown_);
+    const bool otherCold = (split_ || difference_) && !againstReference_ && stage.isCold(before_);
+    const bool cold = stage.isCold(shown_) || otherCold;
+    compiled_ = stage.isCold(shown_) ? shown_ : before_;
     compiling_ = cold && !compiling_;
     std::optional<std::size_t> picture = shown_;
     if (compiling_) {
@@ -225,6 +266,8 @@ void App::draw() {
   frameTimes_.push_back(static_cast<float>(wallMs() - start));
   if (frameTimes_.size() > kFrameHistory) frameTimes_.pop_front();
   if (!hidden_) panels.draw(shown_);
+  inspected_ = panels.inspected();
+  comparison_ = panels.comparison();
   overlay_->draw(size_);
   if (std::exchange(screenshotWish_, false)) saveScreenshot();
 }
@@ -253,7 +296,7 @@ bool App::prepareReference() {
 
 bool App::work(double milliseconds) {
   const bool wanted = measureErrors_ || againstReference_;
-  if (!wanted || stages_.empty() || moving() || size_ != stageSize_ || dirty_) return false;
+  if (!wanted || stages_.empty() || moving() || (size_ != stageSize_ && !cannotRebuild_) || dirty_) return false;
   try {
     if (!prepareReference()) return false;
     if (!reference_->done() && reference_->refine(milliseconds)) dirty_ = true;

@@ -100,7 +100,10 @@ class App {
   void reloadFiles(const std::vector<std::filesystem::path>& changed);
   void reloadDocument();
   void replaceAll();
-  void rebuildStages();
+  void rebuildAll();
+  /// Sets up at the window's size. Where that fails and `otherwiseKeep`, what was stays, at its own size.
+  void rebuildStages(bool otherwiseKeep = false);
+  std::string labelOf(std::size_t index) const;
   /// The stage of that factor, made if need be, with everything where it is now.
   Stage& stageOf(int reduction);
   /// After a movement: sets up again where the plan of the new pose is another.
@@ -113,11 +116,13 @@ class App {
   void flip(int by);
   void stepTexture(int by);
   bool moving() const { return sinceMoved_ < kRestSeconds; }
-  bool hasReference() const { return reference_ && reference_->samples() > 0; }
+  /// Whether there is a reference for what is seen now.
+  bool hasReference() const { return reference_ && referenceHas_ == versions_ && reference_->samples() > 0; }
   /// What the shown technique is compared with: its picture, or its visibility. Null while there is none.
   const TextureResource* other(Stage& stage, bool visibility);
   /// What is to be seen of a technique that has been rendered.
   PresentView view(Stage& stage, std::size_t shown, class Panels& panels);
+  bool compares() const { return split_ || difference_ || (holdOther_ && againstReference_); }
   bool prepareReference();
   void chooseReduction(double frameMs);
 
@@ -141,7 +146,12 @@ class App {
   void saveScreenshot();
   void captureAll();
 
-  void say(std::string text) { message_ = std::move(text); }
+  /// For a few seconds.
+  void say(std::string text) {
+    message_ = std::move(text);
+    sinceSaid_ = 0.0;
+    dirty_ = true;
+  }
   /// A trouble stays on screen until the same thing goes well; empty text: it does.
   void trouble(const std::string& what, const std::string& text);
 
@@ -189,9 +199,16 @@ class App {
   bool screenshotWish_ = false;
   bool quit_ = false;
   bool dirty_ = true;
-  bool compiling_ = false;  ///< this frame still shows the technique before
+  bool compiling_ = false;      ///< this frame still shows the technique before
+  std::size_t compiled_ = 0;    ///< which one is being compiled then
+  bool compared_ = false;       ///< the last frame held both sides of the comparison
+  bool cannotRebuild_ = false;  ///< at this size, until files or the size change
+  double sinceSaid_ = 0.0;
   std::string message_;
+  std::string inspected_;   ///< in the last frame: the texture and its value under the cursor
+  std::string comparison_;  ///< in the last frame: what is compared, or why nothing is
   std::map<std::string, std::string> troubles_;
+  double sinceOpenFailed_ = 0.0;
 
   std::set<Action> held_;
   std::optional<MouseButton> dragging_;

@@ -60,6 +60,26 @@ std::vector<std::filesystem::path> Document::files() const {
   return all;
 }
 
+std::vector<const Field*> editableFields(const ResolvedTechnique& technique) {
+  const bool isReference = technique.technique.registered->declaration.role == TechniqueRole::reference;
+  std::vector<const Field*> fields;
+  for (const Field& field : technique.technique.entry->parameters->fields()) {
+    if (!isReference || field.name != "seed") fields.push_back(&field);
+  }
+  return fields;
+}
+
+Json asConfigEntry(const ResolvedTechnique& technique) {
+  Problems saidAlready;
+  const std::shared_ptr<void> own = presetOf(technique.technique, saidAlready);
+  const Json all = technique.parametersJson();
+  Json entry{{"technique", technique.name()}};
+  for (const Field* field : editableFields(technique)) {
+    if (!equalValue(*field, own.get(), technique.parameters.get())) entry["parameters"][field->name] = all.at(field->name);
+  }
+  return entry;
+}
+
 Document loadDocument(const std::filesystem::path& subject, std::size_t scene,
                       const std::vector<std::filesystem::path>& techniqueDirectories,
                       const std::shared_ptr<Libraries>& libraries) {
@@ -70,6 +90,8 @@ Document loadDocument(const std::filesystem::path& subject, std::size_t scene,
   if (subject.extension() == ".json") {
     Problems problems;
     std::vector<ResolvedRun> runs = resolveRuns(subject, *document.registry, problems);
+    // A technique that is missing may be so because its own file is broken: that says more.
+    if (!problems.empty()) problems.append(document.registry->problems());
     problems.throwIfAny();
     document.scenes = runs.size();
     if (scene >= runs.size())
@@ -82,8 +104,17 @@ Document loadDocument(const std::filesystem::path& subject, std::size_t scene,
     if (job.light != 0) continue;  // each light has the same
     document.techniques.push_back({.technique = job.technique, .asWritten = copyOf(job.technique, *document.registry)});
   }
-  document.cameras.push_back({"the config's", document.run.camera});
-  for (const NamedCamera& camera : document.run.scene.cameras) document.cameras.push_back(camera);
+  document.cameras = document.run.scene.cameras;
+  const auto isTheRuns = [&](const NamedCamera& named) {
+    return writeObject(*cameraTable(), &named.camera) == writeObject(*cameraTable(), &document.run.camera);
+  };
+  // The first is what the picture begins with.
+  const auto same = std::find_if(document.cameras.begin(), document.cameras.end(), isTheRuns);
+  if (same != document.cameras.end()) {
+    std::rotate(document.cameras.begin(), same, same + 1);
+  } else {
+    document.cameras.insert(document.cameras.begin(), {"the config's", document.run.camera});
+  }
   document.sceneHash = contentHash(document.run.scene);
   return document;
 }

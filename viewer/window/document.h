@@ -16,8 +16,14 @@ namespace gnomon {
 struct ViewerTechnique {
   ResolvedTechnique technique = {};        ///< with what keys have changed
   ResolvedTechnique asWritten = {};        ///< as the files say
-  std::optional<ErrorFigures> error = {};  ///< for this view; forgotten when something moves
+  std::optional<ErrorFigures> error = {};  ///< for this view
   int errorSamples = 0;                    ///< of the reference, when it was measured
+
+  /// Something moved or changed.
+  void forgetError() {
+    error.reset();
+    errorSamples = 0;
+  }
 };
 
 struct Document {
@@ -39,6 +45,12 @@ struct Document {
 Document loadDocument(const std::filesystem::path& subject, std::size_t scene,
                       const std::vector<std::filesystem::path>& techniqueDirectories,
                       const std::shared_ptr<Libraries>& libraries);
+
+/// The parameters that may be set by hand: a run config takes no seed of a reference, so keys change none.
+std::vector<const Field*> editableFields(const ResolvedTechnique& technique);
+
+/// {"technique": NAME, "parameters": {...}} with what differs from the technique's own values.
+Json asConfigEntry(const ResolvedTechnique& technique);
 
 /// Parameters that keys changed in `old` are changed in `fresh` too, where the technique still has them and takes the value.
 void keepEdits(Document& fresh, const Document& old);

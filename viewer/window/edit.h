@@ -5,8 +5,9 @@
 
 namespace gnomon {
 
-/// One step up (steps > 0) or down: integers by 1, sizes by a factor of 2, reals by a tenth of themselves (from 0, to a tenth),
-/// choices and booleans to the next. Stays in the field's range. Returns whether anything changed.
+/// One step up (steps > 0) or down: integers to the next that is allowed, sizes by a factor of 2, reals by a tenth of
+/// themselves (from 0, to a tenth) or, on a logarithmic scale, by a tenth of a decade, choices and booleans to the next. Stays
+/// within what the field allows. Returns whether anything changed.
 bool stepValue(const Field& field, void* parameters, int steps);
 
 }  // namespace gnomon

@@ -129,7 +129,9 @@ std::string App::stateAsConfig() const {
   config["camera"] = writeObject(*cameraTable(), &pose_.camera);
   config["lights"] = Json::array({writeObject(*lightTable(), &pose_.light)});
   config["output"] = {{"size", {size_.x, size_.y}}, {"images", {"shaded", "visibility", "error"}}};
-  config["techniques"] = Json::array({{{"technique", t.technique.name()}, {"parameters", t.technique.parametersJson()}}});
+  config["reference"] = asConfigEntry(document_.run.reference);
+  config["baseline"] = asConfigEntry(document_.run.baseline);
+  config["techniques"] = Json::array({asConfigEntry(t.technique)});
   return config.dump(2) + "\n";
 }
 
@@ -138,6 +140,8 @@ void App::saveConfig() {
     const std::filesystem::path path = freshPath(".json");
     writeFileAtomically(path, stateAsConfig());
     say("saved: gnomon render " + path.string());
+  } catch (const Json::exception&) {
+    say("not saved: a name of this view is no UTF-8, which JSON has no way to write");
   } catch (const std::exception& error) {
     say(error.what());
   }
@@ -180,10 +184,15 @@ std::string App::frameLine() const {
   const auto& error = document_.techniques[current_].error;
   line["rmse"] = error && error->rmse ? Json(*error->rmse) : Json(nullptr);
   line["message"] = message_;
+  line["inspected"] = inspected_;
+  line["comparison"] = comparison_;
   line["troubles"] = Json::object();
   for (const auto& [what, text] : troubles_) line["troubles"][what] = text;
-  line["failure"] = stages_.contains(1) ? stages_.at(1).stage->entry(current_).failure : std::string();
-  return line.dump();
+  const auto whole = stages_.find(1);
+  const StageEntry entry = whole == stages_.end() ? StageEntry{} : whole->second.stage->entry(current_);
+  line["cpu_ms"] = entry.cpuMs;
+  line["failure"] = entry.failure;
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace);  // names and messages may be of any bytes
 }
 
 }  // namespace gnomon

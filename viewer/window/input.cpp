@@ -114,7 +114,7 @@ void App::press(Action action) {
       return resetView();
     case Action::nextParameter:
     case Action::previousParameter: {
-      const std::size_t count = document_.techniques[current_].technique.technique.entry->parameters->fields().size();
+      const std::size_t count = editableFields(document_.techniques[current_].technique).size();
       if (count > 0) parameter_ = (parameter_ + (action == Action::nextParameter ? 1 : count - 1)) % count;
       return;
     }
@@ -125,7 +125,9 @@ void App::press(Action action) {
     case Action::resetParameter:
       return resetParameter();
     case Action::reload:
-      return reloadDocument();
+      cannotRebuild_ = false;
+      reloadDocument();
+      return rebuildAll();
     case Action::screenshot:
       screenshotWish_ = true;  // of the next frame: between frames the window's buffer holds nothing certain
       return;
@@ -204,7 +206,7 @@ void App::wheel(double steps) {
     pose_.light = nearer(pose_.light, steps);
     moved(Moved::light);
   } else if (held_.contains(Action::holdNode)) {
-    moveNode(viewDirection(pose_.camera) * (-0.05 * steps * glm::length(nodeCentre() - pose_.camera.position)));
+    moveNode(viewDirection(pose_.camera) * (0.05 * steps * glm::length(nodeCentre() - pose_.camera.position)));
   } else {
     pose_.camera = zoomed(pose_.camera, steps);
     moved(Moved::camera);
@@ -297,31 +299,32 @@ void App::nextLight() {
 
 void App::editParameter(int steps) {
   ViewerTechnique& t = document_.techniques[current_];
-  const auto& fields = t.technique.technique.entry->parameters->fields();
+  const std::vector<const Field*> fields = editableFields(t.technique);
   if (fields.empty()) return say("this technique has no parameters");
+  const Field& field = *fields.at(parameter_);
   const ResolvedTechnique before = copyOf(t.technique, *document_.registry);
-  if (!stepValue(fields[parameter_], t.technique.parameters.get(), steps))
-    return say(fields[parameter_].name + " is at the end of its range");
+  if (!stepValue(field, t.technique.parameters.get(), steps)) return say(field.name + " is at the end of its range");
   parametersChanged(before);
 }
 
 void App::resetParameter() {
   ViewerTechnique& t = document_.techniques[current_];
-  const auto& fields = t.technique.technique.entry->parameters->fields();
+  const std::vector<const Field*> fields = editableFields(t.technique);
   if (fields.empty()) return say("this technique has no parameters");
+  const Field& field = *fields.at(parameter_);
   const ResolvedTechnique before = copyOf(t.technique, *document_.registry);
-  copyValue(fields[parameter_], t.technique.parameters.get(), t.asWritten.parameters.get());
+  copyValue(field, t.technique.parameters.get(), t.asWritten.parameters.get());
   parametersChanged(before);
 }
 
 void App::parametersChanged(const ResolvedTechnique& before) {
   ViewerTechnique& t = document_.techniques[current_];
-  t.error.reset();
+  t.forgetError();
   std::string fault;
   for (auto& [reduction, staged] : stages_) {
     if (fault.empty()) fault = staged.stage->change(current_, t.technique);
   }
-  if (fault.empty()) return trouble(t.technique.name(), "");
+  if (fault.empty()) return trouble(labelOf(current_), "");
   t.technique = before;
   for (auto& [reduction, staged] : stages_) staged.stage->change(current_, t.technique);
   say(fault);

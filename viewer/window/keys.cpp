@@ -43,7 +43,7 @@ std::span<const KeyBinding> keyBindings() {
       KeyBinding{increase, GLFW_KEY_KP_ADD, false, "keypad +", "", kRepeats},
       KeyBinding{decrease, GLFW_KEY_MINUS, false, "-", "decrease the parameter, or its choice before", kRepeats},
       KeyBinding{decrease, GLFW_KEY_KP_SUBTRACT, false, "keypad -", "", kRepeats},
-      KeyBinding{resetParameter, GLFW_KEY_BACKSPACE, false, "Backspace", "the parameter's default"},
+      KeyBinding{resetParameter, GLFW_KEY_BACKSPACE, false, "Backspace", "the parameter as the files have it"},
       KeyBinding{frameAll, GLFW_KEY_F, false, "F", "frame the whole scene", Habit::once, "Move"},
       KeyBinding{forwards, GLFW_KEY_W, false, "W", "fly forwards (S back, A left, D right)", kHeld},
       KeyBinding{backwards, GLFW_KEY_S, false, "S", "", kHeld},

@@ -28,11 +28,24 @@ Axes axesOf(const Camera& camera) {
 glm::dvec3 turnedOffset(const glm::dvec3& offset, const glm::dvec3& up, glm::dvec2 drag) {
   const glm::dvec3 about = glm::normalize(up);
   const glm::dvec3 yawed = glm::angleAxis(-drag.x * kTurn, about) * offset;
-  const glm::dvec3 side = glm::cross(about, yawed);
-  if (glm::length(side) < 1e-9 * glm::length(offset)) return yawed;
+  if (!(glm::length(offset) > 0.0)) return offset;  // a point light may be where its target is
+  glm::dvec3 side = glm::cross(about, yawed);
+  // Straight above or below, any side will do: else a light overhead could never be turned.
+  if (glm::length(side) < 1e-9 * glm::length(offset))
+    side = glm::cross(about, std::abs(about.x) < 0.9 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0));
   const double polar = std::acos(std::clamp(glm::dot(about, glm::normalize(yawed)), -1.0, 1.0));
   const double wanted = std::clamp(polar - drag.y * kTurn, kPole, glm::pi<double>() - kPole);
   return glm::angleAxis(wanted - polar, glm::normalize(side)) * yawed;
+}
+
+/// A tenth nearer a step; the length stays where steps back still mean something.
+double boundedFactor(double length, double steps) {
+  constexpr double kNearest = 1e-6;
+  constexpr double kFarthest = 1e9;
+  if (!(length > 0.0)) return 1.0;
+  return std::clamp(length * std::pow(0.9, std::clamp(steps, -1000.0, 1000.0)), std::min(kNearest, length),
+                    std::max(kFarthest, length)) /
+         length;
 }
 
 }  // namespace
@@ -65,10 +78,11 @@ Camera panned(const Camera& camera, glm::dvec2 drag) {
 }
 
 Camera zoomed(const Camera& camera, double steps) {
-  const double factor = std::pow(0.9, steps);
+  const bool flat = camera.type == CameraType::orthographic;
+  const double factor = boundedFactor(flat ? camera.height : glm::length(camera.position - camera.target), steps);
   Camera moved = camera;
   moved.position = camera.target + (camera.position - camera.target) * factor;
-  if (camera.type == CameraType::orthographic) moved.height *= factor;
+  if (flat) moved.height *= factor;
   return moved;
 }
 
@@ -102,7 +116,8 @@ Light shifted(const Light& light, const glm::dvec3& metres) {
 
 Light nearer(const Light& light, double steps) {
   Light moved = light;
-  moved.position = light.target + (light.position - light.target) * std::pow(0.9, steps);
+  moved.position =
+      light.target + (light.position - light.target) * boundedFactor(glm::length(light.position - light.target), steps);
   return moved;
 }
 

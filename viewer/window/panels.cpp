@@ -49,6 +49,22 @@ void Panels::addWrapped(std::vector<std::string>& lines, const std::string& text
   for (std::string line; std::getline(in, line);) lines.push_back((strong ? "!" : "") + line);
 }
 
+bool Panels::isFree(const Rectangle& wanted) const {
+  if (wanted.min.x < 0.0f || wanted.min.y < 0.0f || wanted.max.x > static_cast<float>(app_.size_.x) + 0.5f) return false;
+  if (wanted.max.y > static_cast<float>(app_.size_.y) - 1.5f * o_.lineHeight()) return false;  // the bottom line
+  return std::none_of(taken_.begin(), taken_.end(), [&](const Rectangle& r) {
+    return wanted.min.x < r.max.x && r.min.x < wanted.max.x && wanted.min.y < r.max.y && r.min.y < wanted.max.y;
+  });
+}
+
+bool Panels::boxIfFree(glm::vec2 at, const std::vector<std::string>& lines) {
+  const Rectangle wanted{at, at + boxSize(lines)};
+  if (!isFree(wanted)) return false;
+  box(at, lines);
+  taken_.push_back(wanted);
+  return true;
+}
+
 void Panels::draw(std::size_t shown) {
   if (app_.showHelp_) return help();  // alone: nothing behind it can be read anyway
   if (app_.texture_ < 0) {            // textures are seen from elsewhere
@@ -56,10 +72,10 @@ void Panels::draw(std::size_t shown) {
     nodeMarker();
   }
   const float bottom = technique(shown);
-  if (app_.showTimes_) times();
   if (app_.showPlan_) plan();
+  if (app_.showTimes_) times();
   parameters(bottom);
-  if (app_.difference_ && app_.texture_ < 0) legend(bottom);
+  if (app_.difference_ && app_.compared_) legend(bottom);
   troubles();
   bottomLine();
 }
@@ -75,16 +91,17 @@ std::string Panels::errorLine(const ViewerTechnique& t) const {
                      t.error->rmseBand.value_or(0.0), t.error->bias.value_or(0.0), rays);
 }
 
-std::vector<std::string> Panels::comparison() const {
-  const std::string& before = app_.document_.techniques[app_.before_].technique.name();
-  if (app_.againstReference_ && !app_.hasReference())
-    return {app_.split_ || app_.difference_ ? "!compared with the reference as soon as nothing moves"
-                                            : "C, X and Space: the reference"};
-  const std::string other = app_.againstReference_ ? "the reference" : before;
-  if (app_.split_) return {fmt::format("left of the divider this, right of it {}", other)};
-  if (app_.difference_) return {fmt::format("V of this minus V of {}", other)};
-  if (app_.againstReference_) return {"C, X and Space: the reference"};
-  return {};
+std::string Panels::comparison() const {
+  const std::string other = app_.againstReference_ ? "the reference" : app_.document_.techniques[app_.before_].technique.name();
+  if (app_.compares() && app_.texture_ < 0 && !app_.compared_) {
+    if (app_.againstReference_ && !app_.hasReference()) return "!compared with the reference as soon as nothing moves";
+    return "!nothing to compare with: " + other + " shows nothing here";
+  }
+  if (app_.split_) return fmt::format("left of the divider this, right of it {}", other);
+  if (app_.difference_) return fmt::format("V of this minus V of {}", other);
+  if (app_.holdOther_) return "!" + other;
+  if (app_.againstReference_) return "C, X and Space: the reference";
+  return "";
 }
 
 float Panels::technique(std::size_t shown) {
@@ -102,7 +119,7 @@ float Panels::technique(std::size_t shown) {
   if (staged != app_.stages_.end()) {
     const StageEntry& entry = staged->second.stage->entry(shown);
     if (!entry.failure.empty()) {
-      addWrapped(lines, "!not shown: " + entry.failure, width);
+      lines.push_back("!not shown: " + entry.failure);
       if (app_.lastGood_ && *app_.lastGood_ != shown)
         lines.push_back("what you see is " + app_.document_.techniques[*app_.lastGood_].technique.name());
     } else {
@@ -115,49 +132,70 @@ float Panels::technique(std::size_t shown) {
       lines.push_back(fmt::format("!moving: drawn at 1/{} of the resolution, {}x{}", app_.reduction_, size.x, size.y));
     }
   }
-  for (const std::string& line : comparison()) lines.push_back(line);
+  if (!app_.compiling_ && !(app_.lastGood_ && *app_.lastGood_ != shown)) {
+    if (const std::string line = comparison(); !line.empty()) lines.push_back(line);
+  }
   if (const double length = duration(app_.document_.run.scene); length > 0.0)
     lines.push_back(
         fmt::format("time   {:.2f} of {:.2f} s{}", app_.pose_.time, length, app_.playing_ ? ", playing" : "  (P plays)"));
   if (app_.node_) lines.push_back("node   " + app_.nodes_[*app_.node_] + "  (hold M: move)");
   if (app_.held_.contains(Action::holdLight)) lines.push_back("!" + app_.lightName());
-  if (!inspected_.empty()) addWrapped(lines, "!" + inspected_, width);
-  const glm::vec2 end = box({0.0f, 0.0f}, lines);
-  techniqueRight_ = end.x;
+  if (!inspected_.empty()) lines.push_back("!" + inspected_);
+  std::vector<std::string> fitting;
+  for (const std::string& line : lines) addWrapped(fitting, line, width);
+  const glm::vec2 end = box({0.0f, 0.0f}, fitting);
+  taken_.push_back({{0.0f, 0.0f}, end});
   return end.y;
 }
 
 void Panels::parameters(float belowTechnique) {
   const ViewerTechnique& t = app_.document_.techniques[app_.current_];
-  const auto& fields = t.technique.technique.entry->parameters->fields();
+  const std::vector<const Field*> fields = editableFields(t.technique);
   if (fields.empty()) return;
-  std::vector<std::string> lines;
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    const std::string value = valueText(fields[i], t.technique.parameters.get());
-    const bool changed = value != valueText(fields[i], t.asWritten.parameters.get());
-    lines.push_back(fmt::format("{}{:<20} {} {}{}", i == app_.parameter_ ? "!→ " : "  ", fields[i].name, value,
-                                fields[i].range.unit, changed ? " *" : ""));
+  const auto lineOf = [&](std::size_t i) {
+    const Field& field = *fields[i];
+    const bool changed = !equalValue(field, t.technique.parameters.get(), t.asWritten.parameters.get());
+    return fmt::format("{}{:<20} {} {}{}", i == app_.parameter_ ? "!→ " : "  ", field.name,
+                       valueText(field, t.technique.parameters.get()), field.range.unit, changed ? " *" : "");
+  };
+  const Field& chosen = *fields.at(app_.parameter_);
+  const std::string effect = chosen.binding == Binding::structure    ? "a change sets the technique up again"
+                             : chosen.binding == Binding::specialise ? "a change compiles a shader"
+                                                                     : "changes at once, without set-up";
+  const auto panel = [&](std::size_t first, std::size_t count) {
+    std::vector<std::string> lines;
+    for (std::size_t i = first; i < first + count; ++i) lines.push_back(lineOf(i));
+    addWrapped(lines, allowedText(chosen), std::max(boxSize(lines).x, o_.textWidth(effect)));
+    lines.push_back(effect);
+    return lines;
+  };
+  // Beside the technique's box where there is room, else below it; in a small window only the chosen one.
+  for (const auto& lines : {panel(0, fields.size()), panel(app_.parameter_, 1)}) {
+    const float left = static_cast<float>(app_.size_.x) - boxSize(lines).x;
+    if (boxIfFree({left, 0.0f}, lines) || boxIfFree({left, belowTechnique}, lines)) return;
   }
-  const Field& chosen = fields[app_.parameter_];
-  addWrapped(lines, allowedText(chosen), std::max(boxSize(lines).x, o_.textWidth("a change sets the technique up again")));
-  lines.push_back(chosen.binding == Binding::structure    ? "a change sets the technique up again"
-                  : chosen.binding == Binding::specialise ? "a change compiles a shader"
-                                                          : "changes at once, without set-up");
-  // Beside the technique's box where there is room, else below it.
-  const float left = static_cast<float>(app_.size_.x) - boxSize(lines).x;
-  box({left, left < techniqueRight_ ? belowTechnique : 0.0f}, lines);
 }
 
 void Panels::plan() {
-  std::vector<std::string> lines{"!effect plan"};
-  for (const PlanDecision& d : app_.plan_.decisions)
-    lines.push_back(fmt::format("{:<21} {:<3}  {}", d.name, d.on ? "on" : "off", cut(d.reason, 84)));
-  box({0.0f, static_cast<float>(app_.size_.y) - boxSize(lines).y - 2.0f * o_.lineHeight()}, lines);
+  const float width = static_cast<float>(app_.size_.x);
+  std::vector<std::string> whole{"!effect plan"};
+  std::vector<std::string> cutShort = whole;
+  const auto room = static_cast<std::size_t>(std::max(8.0f, width / o_.textWidth("m") - 3.0f));
+  for (const PlanDecision& d : app_.plan_.decisions) {
+    const std::string line = fmt::format("{:<21} {:<3}  {}", d.name, d.on ? "on" : "off", d.reason);
+    addWrapped(whole, line, width);
+    cutShort.push_back(cut(line, room));
+  }
+  for (const auto& lines : {whole, cutShort}) {
+    const glm::vec2 at(0.0f, static_cast<float>(app_.size_.y) - boxSize(lines).y - 2.0f * o_.lineHeight());
+    if (boxIfFree(at, lines)) return;
+  }
 }
 
 void Panels::times() {
-  if (!app_.stages_.contains(1)) return;
-  const Stage& stage = *app_.stages_.at(1).stage;
+  const auto staged = app_.stages_.find(app_.moving() ? app_.reduction_ : 1);
+  if (staged == app_.stages_.end()) return;
+  const Stage& stage = *staged->second.stage;
   const StageEntry& e = stage.entry(app_.current_);
   const float line = o_.lineHeight();
   const float pad = kPad * app_.scale_;
@@ -165,7 +203,10 @@ void Panels::times() {
   const float height = line * (static_cast<float>(e.passes.size()) + 5.0f) + 2.0f * pad;
   const glm::vec2 at(static_cast<float>(app_.size_.x) - width - 2.0f * pad,
                      static_cast<float>(app_.size_.y) - height - 2.0f * line);
-  o_.rectangle(at, at + glm::vec2(width + 2.0f * pad, height), kBack);
+  const Rectangle wanted{at, at + glm::vec2(width + 2.0f * pad, height)};
+  if (!isFree(wanted)) return;  // a small window has no room for it beside the plan
+  o_.rectangle(wanted.min, wanted.max, kBack);
+  taken_.push_back(wanted);
   glm::vec2 pen = at + pad;
   o_.text(pen, "passes, ms wall (finished after each)", kStrong);
   double longest = 1e-9;
@@ -195,7 +236,7 @@ void Panels::times() {
   }
 }
 
-void Panels::help() {
+std::vector<std::vector<std::string>> Panels::helpColumns() const {
   std::vector<std::string> lines;
   for (const KeyBinding& b : keyBindings()) {
     if (b.heading[0] != '\0') lines.push_back(std::string("!") + b.heading);
@@ -205,18 +246,34 @@ void Panels::help() {
   for (const MouseHabit& m : mouseHabits()) lines.push_back(fmt::format("{:<14} {}", m.name, m.meaning));
   // As many columns as the height asks for.
   const auto fit =
-      static_cast<std::size_t>(std::max(1.0f, (static_cast<float>(app_.size_.y) - 4.0f * o_.lineHeight()) / o_.lineHeight()));
+      static_cast<std::size_t>(std::max(1.0f, (static_cast<float>(app_.size_.y) - 3.0f * o_.lineHeight()) / o_.lineHeight()));
   const std::size_t columns = (lines.size() + fit - 1) / fit;
   const std::size_t each = (lines.size() + columns - 1) / columns;
   std::vector<std::vector<std::string>> parts;
-  float width = 0.0f;
   for (std::size_t i = 0; i < lines.size(); i += each) {
     parts.emplace_back(lines.begin() + static_cast<std::ptrdiff_t>(i),
                        lines.begin() + static_cast<std::ptrdiff_t>(std::min(i + each, lines.size())));
-    width += boxSize(parts.back()).x;
   }
+  return parts;
+}
+
+float Panels::fittingHelp(float pixels) {
+  constexpr float kSmallest = 6.0f;
+  for (; pixels > kSmallest; pixels -= 1.0f) {
+    o_.setFontPixels(pixels);
+    float width = 0.0f;
+    for (const auto& part : helpColumns()) width += boxSize(part).x;
+    if (width <= static_cast<float>(app_.size_.x)) break;
+  }
+  return pixels;
+}
+
+void Panels::help() {
+  const auto parts = helpColumns();
+  float width = 0.0f;
+  for (const auto& part : parts) width += boxSize(part).x;
   float x = std::max(0.0f, (static_cast<float>(app_.size_.x) - width) * 0.5f);
-  for (const auto& part : parts) x = box({x, 2.0f * o_.lineHeight()}, part).x;
+  for (const auto& part : parts) x = box({x, o_.lineHeight()}, part).x;
 }
 
 void Panels::bottomLine() {
@@ -227,7 +284,7 @@ void Panels::bottomLine() {
       "F1 keys   ←/→ technique   C split   X difference   R reference   V textures   G plan   T times   ↑/↓ +/- parameters";
   const bool busy = app_.compiling_;
   const std::string said =
-      busy ? "compiling " + app_.document_.techniques[app_.shown_].technique.name() + " ..." : app_.message_;
+      busy ? "compiling " + app_.document_.techniques[app_.compiled_].technique.name() + " ..." : app_.message_;
   const auto room = static_cast<std::size_t>(std::max(1.0f, static_cast<float>(app_.size_.x) / o_.textWidth("m") - 2.0f));
   o_.text({kPad * app_.scale_, y}, said.empty() ? keys : cut(said, room), said.empty() ? kText : kStrong);
 }
@@ -237,7 +294,7 @@ void Panels::troubles() {
   const float width = 0.9f * static_cast<float>(app_.size_.x);
   std::vector<std::string> lines;
   for (const auto& [what, text] : app_.troubles_) {
-    lines.push_back("!" + what + ": what last worked is shown");
+    addWrapped(lines, "!" + what + ": what last worked is shown", width);
     addWrapped(lines, text, width);
   }
   if (lines.size() > kMostTroubleLines) {

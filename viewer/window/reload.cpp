@@ -1,4 +1,6 @@
 // What the viewer looks at: opening it, and following its files. What is broken changes nothing and is told on screen.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -54,6 +56,7 @@ void App::adopt(Document document) {
 }
 
 void App::resetView() {
+  reduction_ = 1;
   const SceneChoice& scene = document_.run.config.scenes.at(document_.scene);
   pose_ = {document_.run.lights.at(light_), document_.run.camera, {scene.moves.begin(), scene.moves.end()}, scene.time};
   playing_ = false;
@@ -68,10 +71,12 @@ void App::open(const std::filesystem::path& subject) {
     troubles_.clear();
     adopt(std::move(document));
     resetView();
+    sinceMoved_ = kRestSeconds;
     rebuildStages();
     say("opened " + subject.filename().string());
   } catch (const std::exception& error) {
-    trouble("opening " + subject.filename().string(), textOf(error));
+    sinceOpenFailed_ = 0.0;
+    trouble("opening", subject.filename().string() + " was not opened:\n" + textOf(error));
   }
 }
 
@@ -89,13 +94,26 @@ void App::openScene(std::size_t scene) {
 }
 
 void App::reloadFiles(const std::vector<std::filesystem::path>& changed) {
-  if (std::all_of(changed.begin(), changed.end(), isShader)) {
-    say("shaders changed: set up again");
-    replaceAll();
-  } else {
-    say("files changed: loaded again");
-    reloadDocument();
+  cannotRebuild_ = false;
+  if (!std::all_of(changed.begin(), changed.end(), isShader)) return reloadDocument();
+  const std::string shared = (installationDirectory() / "shaders").string();
+  const bool own =
+      std::none_of(changed.begin(), changed.end(), [&](const auto& path) { return path.string().rfind(shared, 0) == 0; });
+  say("shaders changed: set up again");
+  own ? replaceAll() : rebuildAll();
+}
+
+void App::rebuildAll() {
+  try {
+    auto presenter = std::make_unique<Presenter>();
+    auto overlay = std::make_unique<Overlay>(15.0f * scale_);
+    presenter_ = std::move(presenter);
+    overlay_ = std::move(overlay);
+    trouble("window", "");
+  } catch (const std::exception& error) {
+    trouble("window", error.what());
   }
+  rebuildStages(true);
 }
 
 void App::reloadDocument() {
@@ -106,6 +124,8 @@ void App::reloadDocument() {
     const std::string wasCurrent = old.techniques[current_].technique.name();
     const std::string wasBefore = old.techniques[before_].technique.name();
     const Pose was = pose_;
+    for (std::size_t i = 0; i < old.techniques.size(); ++i)
+      troubles_.erase(fmt::format("{} {}", i + 1, old.techniques[i].technique.name()));
     adopt(std::move(fresh));
     const auto find = [&](const std::string& name, std::size_t otherwise) {
       for (std::size_t i = 0; i < document_.techniques.size(); ++i) {
@@ -131,6 +151,7 @@ void App::reloadDocument() {
                                sameValues(planOverridesTable(), document_.run.config.plan, old.run.config.plan) &&
                                pose_.light.type == was.light.type;
     trouble("config", "");
+    say("loaded again");
     if (sameStructure) {
       replaceAll();
     } else {
@@ -142,6 +163,7 @@ void App::reloadDocument() {
 }
 
 void App::replaceAll() {
+  if (stages_.empty() || size_ != stageSize_) return rebuildStages(true);
   reference_.reset();
   referenceFault_.clear();
   for (std::size_t i = 0; i < document_.techniques.size(); ++i) {
@@ -150,8 +172,8 @@ void App::replaceAll() {
     for (auto& [reduction, staged] : stages_) {
       if (staged.stage && fault.empty()) fault = staged.stage->replace(i, t.technique);
     }
-    t.error.reset();
-    trouble(t.technique.name(), fault);
+    t.forgetError();
+    trouble(labelOf(i), fault);
   }
   dirty_ = true;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -49,6 +50,7 @@ std::string fault(const std::vector<std::string>& words) {
   const bool numbers = words[0] == "wait" || words[0] == "resize" || words[0] == "mouse" || words[0] == "wheel";
   for (std::size_t i = 1; numbers && i < words.size(); ++i) {
     if (!isNumber(words[i])) return fmt::format("'{}' is no number", words[i]);
+    if (std::abs(std::stod(words[i])) > 1e6) return fmt::format("'{}' is beyond a million", words[i]);
   }
   return {};
 }
