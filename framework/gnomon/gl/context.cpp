@@ -86,6 +86,10 @@ void DebugMessages::throwIfError(const std::string& where) {
 }
 
 void DebugMessages::discard() {
+  discardMessages();
+}
+
+void discardMessages() {
   takeErrorFlag();
   gathered.errors.clear();
 }

@@ -13,6 +13,10 @@ struct ContextInfo {
 };
 ContextInfo currentContextInfo();
 
+/// Forgets what DebugMessages have gathered: for who tells of a fault in words of its own, such as a shader that does not
+/// compile.
+void discardMessages();
+
 /// What the driver calls an error, gathered for this thread while any of these lives; they share what was gathered, in any
 /// order of making and ending. The current context's messages come here from when one was made. Drivers whose contexts tell
 /// nothing unless made for debugging are asked by glGetError.

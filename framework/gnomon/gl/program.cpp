@@ -9,6 +9,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/base/files.h"
+#include "gnomon/gl/context.h"
 
 namespace gnomon::gl {
 
@@ -203,6 +204,7 @@ ProgramObject makeProgram(const ShaderSources& sources, const std::vector<Shader
       std::string message(static_cast<std::size_t>(std::max(length, 1)), '\0');
       glGetShaderInfoLog(shader.name(), length, nullptr, message.data());
       message.resize(std::min(message.size(), message.find('\0')));
+      discardMessages();  // said here, with file and line
       throw Error(fmt::format("shader {} does not compile:{}", stage.file, withFileNames(message, source.files)));
     }
     glAttachShader(program.name(), shader.name());
@@ -216,6 +218,7 @@ ProgramObject makeProgram(const ShaderSources& sources, const std::vector<Shader
     std::string message(static_cast<std::size_t>(std::max(length, 1)), '\0');
     glGetProgramInfoLog(program.name(), length, nullptr, message.data());
     message.resize(std::min(message.size(), message.find('\0')));
+    discardMessages();
     throw Error(fmt::format("program {} does not link: {}", label, message));
   }
   for (const ShaderObject& shader : shaders) glDetachShader(program.name(), shader.name());
