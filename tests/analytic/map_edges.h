@@ -126,4 +126,19 @@ inline double shadowedShare(SessionSetup setup, const std::string& technique, co
   return shadowedShare(session, slot);
 }
 
+/// The mean V where the source is wholly hidden, by 256 rays a pixel.
+inline double leakInUmbra(const SessionSetup& setup, const std::string& technique, const std::string& parameters) {
+  const Image truth = renderVisibility(setup, "ray_traced", R"({"samples": 256})");
+  const Image v = renderVisibility(setup, technique, parameters);
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < v.data.size(); ++i) {
+    if (truth.data[i] > 0.0f) continue;
+    sum += static_cast<double>(v.data[i]);
+    ++count;
+  }
+  if (count < 100.0) throw Error("no umbra in view");
+  return sum / count;
+}
+
 }  // namespace gnomon::test
