@@ -85,13 +85,14 @@ struct MapDepths {
 
 MapDepths mapDepths(const SessionSetup& setup, const DepthMapParameters& parameters) {
   Graph graph("map", setup.outputSize, {{installationDirectory() / "shaders"}, {}});
-  const SessionPasses passes = sessionPasses(graph.builder(), setup.outputSize);
+  GBuffer gbuffer = sessionPasses(graph.builder(), setup.outputSize).gbuffer;
+  gbuffer.mask = lightPasses(graph.builder(), everywhere(setup.outputSize)).mask;
   const std::vector<Bounds> bounds = survey(setup.scene, setup.light, setup.camera, setup.outputSize).instanceBounds;
   const EffectPlan plan =
       planEffects(survey(setup.scene, setup.light, setup.camera, setup.outputSize), setup.light, setup.camera);
   const Buffer values = graph.builder().buffer("Parameters", 16);
   const Texture map =
-      lightDepth(graph.builder(), {setup.outputSize, setup.light, passes.gbuffer, 16384, values}, parameters, plan, 0.0).map;
+      lightDepth(graph.builder(), {setup.outputSize, setup.light, gbuffer, 16384, values}, parameters, plan, 0.0).map;
   graph.compile(std::span(&map, 1));
   const GpuScene gpu(setup.scene);
   graph.run({setup.scene, bounds, gpu, setup.light, setup.camera, setup.outputSize, 0.0}, {}, {});

@@ -1,5 +1,6 @@
 // plan, render, batch.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -45,6 +46,17 @@ class ProgressLine {
   bool terminal_ = isatty(STDERR_FILENO) != 0;
   double start_ = wallMs();
 };
+
+void printLightsPictures(const std::vector<LightsPictureRecord>& pictures) {
+  for (const LightsPictureRecord& picture : pictures) {
+    if (picture.path.empty()) {
+      fmt::print("{}, all lights: no picture: {}\n", picture.what, fmt::join(picture.notes, "; "));
+    } else {
+      fmt::print("{}, all lights: {}{}{}\n", picture.what, picture.path.filename().string(),
+                 picture.notes.empty() ? "" : ", without ", fmt::join(picture.notes, "; "));
+    }
+  }
+}
 
 void readShard(const std::string& text, BatchOptions& options) {
   if (text.empty()) return;
@@ -123,6 +135,7 @@ int renderCommand(const CommonOptions& common, const RenderOptions& options) {
   const BatchSummary summary = runBatch(runs, registry, how, ProgressLine{});
   fmt::print("{}\n", summaryTable(summary.records));
   if (summary.kept > 0) fmt::print("{} of {} results were there already\n", summary.kept, summary.records.size());
+  printLightsPictures(summary.lightsPictures);
   fmt::print("images   {}\nresults  {}\n", (options.out / "images").string(), summary.results.string());
   if (!summary.trace.empty()) fmt::print("trace    {}\n", summary.trace.string());
   if (summary.notOk > 0)
@@ -130,7 +143,9 @@ int renderCommand(const CommonOptions& common, const RenderOptions& options) {
   const bool failed = std::any_of(summary.records.begin(), summary.records.end(), [](const JobRecord& r) {
     return r.status == JobStatus::failed || r.status == JobStatus::crashed;
   });
-  return failed ? 1 : 0;
+  const bool pictureFailed = std::any_of(summary.lightsPictures.begin(), summary.lightsPictures.end(),
+                                         [](const auto& picture) { return picture.failed; });
+  return failed || pictureFailed ? 1 : 0;
 }
 
 }  // namespace gnomon

@@ -1,5 +1,7 @@
 #include "gnomon/passes/gbuffer.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <glm/mat4x4.hpp>
 #include <glm/trigonometric.hpp>
@@ -43,8 +45,6 @@ LightViewBlock lightViewBlock(const FrameInputs& frame) {
 
 }  // namespace
 
-namespace {
-
 std::shared_ptr<Restriction> everywhere(glm::ivec2 size) {
   auto texture = std::make_shared<TextureResource>();
   texture->name = "restriction";
@@ -55,14 +55,10 @@ std::shared_ptr<Restriction> everywhere(glm::ivec2 size) {
   return std::make_shared<Restriction>(Restriction{std::move(texture), glm::ivec4(0, 0, size)});
 }
 
-}  // namespace
-
 SessionPasses sessionPasses(GraphBuilder& graph, glm::ivec2 size) {
   SessionPasses passes;
   passes.view = graph.buffer("View", sizeof(ViewBlock));
-  passes.lightView = graph.buffer("LightView", sizeof(LightViewBlock));
   graph.provide("View", passes.view);
-  graph.provide("LightView", passes.lightView);
   const DrawList visible = graph.drawList("visible instances");
   const auto everything = std::make_shared<std::vector<std::uint8_t>>();  // flags: kept, so that frames allocate nothing
 
@@ -75,10 +71,6 @@ SessionPasses sessionPasses(GraphBuilder& graph, glm::ivec2 size) {
                        everything->assign(frame.scene.instances.size(), 1);
                        context.draw(visible, *everything, frame.camera.position);
                      }});
-  graph.cpu("light view",
-            {.inputs = {Input::camera, Input::light}, .buffers = {passes.lightView}, .run = [=](CpuContext& context) {
-               context.writeBlock(passes.lightView, lightViewBlock(context.frame()));
-             }});
 
   GBuffer& g = passes.gbuffer;
   g.position = graph.texture("position", {size, Format::rgba32f});
@@ -97,19 +89,42 @@ SessionPasses sessionPasses(GraphBuilder& graph, glm::ivec2 size) {
   graph.provide("gIds", g.ids);
   graph.provide("gShadingNormal", passes.shadingNormal);
   graph.provide("gAlbedo", passes.albedo);
-  passes.restriction = everywhere(size);
-  graph.provide("gRestriction", graph.import("restriction", passes.restriction->pixels));
-  g.mask = graph.fullscreen("receiver mask", {.shader = "gnomon/receiver_mask.frag",
-                                              .format = Format::r8,
-                                              .clear = glm::vec4(0.0f),
-                                              .region = [r = passes.restriction] { return r->region; }});
-  graph.provide("gMask", g.mask);
   return passes;
 }
 
-Texture shadingPass(GraphBuilder& graph, Texture visibility) {
-  return graph.fullscreen(
-      "shading", {.shader = "gnomon/shading.frag", .reads = {{"visibilityMap", visibility}}, .format = Format::rgba16f});
+LightPasses lightPasses(GraphBuilder& graph, const std::shared_ptr<Restriction>& restriction) {
+  LightPasses passes;
+  passes.lightView = graph.buffer("LightView", sizeof(LightViewBlock));
+  graph.provide("LightView", passes.lightView);
+  graph.cpu("light view",
+            {.inputs = {Input::camera, Input::light}, .buffers = {passes.lightView}, .run = [=](CpuContext& context) {
+               context.writeBlock(passes.lightView, lightViewBlock(context.frame()));
+             }});
+  graph.provide("gRestriction", graph.import("restriction", restriction->pixels));
+  passes.mask = graph.fullscreen("receiver mask", {.shader = "gnomon/receiver_mask.frag",
+                                                   .format = Format::r8,
+                                                   .clear = glm::vec4(0.0f),
+                                                   .region = [restriction] { return restriction->region; }});
+  graph.provide("gMask", passes.mask);
+  return passes;
+}
+
+Texture shadingPasses(GraphBuilder& graph, std::span<const ShownLight> lights) {
+  Texture picture;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    graph.provide("LightView", lights[i].light.lightView);
+    graph.provide("gMask", lights[i].light.mask);
+    const bool isLast = i + 1 == lights.size();
+    FullscreenPass pass{.shader = "gnomon/shading.frag",
+                        .reads = {{"visibilityMap", lights[i].visibility}},
+                        .format = isLast ? Format::rgba16f : Format::rgba32f};
+    if (i > 0) {
+      pass.shader = "gnomon/shading_add.frag";
+      pass.reads.push_back({"otherLights", picture});
+    }
+    picture = graph.fullscreen(i == 0 ? "shading" : fmt::format("shading, light {} of {}", i + 1, lights.size()), pass);
+  }
+  return picture;
 }
 
 }  // namespace gnomon

@@ -16,6 +16,7 @@
 #include "gnomon/base/log.h"
 #include "gnomon/measure/clock_trials.h"
 #include "gnomon/run/light_run.h"
+#include "gnomon/run/lights_picture.h"
 #include "gnomon/run/pictures.h"
 #include "gnomon/run/trace.h"
 
@@ -80,9 +81,9 @@ bool isWhole(const JobRecord& record, const ResolvedRun& run, const BatchOptions
   return std::all_of(paths.begin(), paths.end(), [](const auto& path) { return fileStamp(path).has_value(); });
 }
 
-std::string label(const ResolvedRun& run, const ResolvedJob& job) {
-  const std::string parameters = job.technique.parametersText();
-  return fmt::format("{}: {}{}", run.sceneName, job.technique.name(), parameters.empty() ? "" : " (" + parameters + ")");
+std::string label(const ResolvedRun& run, const ResolvedTechnique& technique) {
+  const std::string parameters = technique.parametersText();
+  return fmt::format("{}: {}{}", run.sceneName, technique.name(), parameters.empty() ? "" : " (" + parameters + ")");
 }
 
 JobRecord failedJob(const ResolvedRun& run, std::size_t light, const ResolvedTechnique& technique, const std::string& reason) {
@@ -97,6 +98,38 @@ JobRecord failedJob(const ResolvedRun& run, std::size_t light, const ResolvedTec
   record.reason = reason;
   return record;
 }
+
+/// Draws them in one session that is made for the first of them.
+class LightsPictures {
+ public:
+  LightsPictures(const ResolvedRun& run, const BatchOptions& options, Trace& trace)
+      : run_(run), options_(options), trace_(trace) {}
+
+  std::filesystem::path pathOf(const ResolvedTechnique& technique) const {
+    return lightsPicturePath(options_.out / "images", run_, technique);
+  }
+
+  LightsPictureRecord make(const ResolvedTechnique& technique) {
+    LightsPictureRecord record{label(run_, technique), pathOf(technique), {}, false};
+    const TraceSlice slice(&trace_, record.what + ", all lights", {{"config", run_.config.name}});
+    try {
+      if (!lights_) lights_ = std::make_unique<LightsPicture>(run_);
+      record.notes = lights_->write(record.path, technique, {.checkFinite = options_.checkFinite});
+      if (record.notes.size() == run_.lights.size()) record.path.clear();
+    } catch (const std::exception& error) {  // the records hold: only the picture is missing
+      record.path.clear();
+      record.notes = {error.what()};
+      record.failed = true;
+    }
+    return record;
+  }
+
+ private:
+  const ResolvedRun& run_;
+  const BatchOptions& options_;
+  Trace& trace_;
+  std::unique_ptr<LightsPicture> lights_;
+};
 
 }  // namespace
 
@@ -125,7 +158,12 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
 
   std::size_t total = 0;
   for (const ResolvedRun& run : runs) total += run.jobs.size();
+  const auto isMine = [&](std::size_t number) {
+    return static_cast<int>(number % static_cast<std::size_t>(options.shards)) == options.shard;
+  };
   std::size_t index = 0;
+  std::size_t pictures = 0;
+  bool ran = false;
   for (const ResolvedRun& run : runs) {
     for (std::size_t light = 0; light < run.lights.size(); ++light) {
       std::unique_ptr<LightRun> lightRun;  // made when the first of its jobs is not there yet
@@ -133,8 +171,8 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
       for (const ResolvedJob& job : run.jobs) {
         if (job.light != light) continue;
         const std::size_t mine = index++;
-        if (static_cast<int>(mine % static_cast<std::size_t>(options.shards)) != options.shard) continue;
-        const std::string name = label(run, job);
+        if (!isMine(mine)) continue;
+        const std::string name = label(run, job.technique);
         const auto found = earlier.find(jobKey(run, light, job.technique));
         if (found != earlier.end() && isWhole(found->second, run, options)) {
           ++summary.kept;
@@ -142,6 +180,7 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
           progress(mine + 1, total, name, &summary.records.back());
           continue;
         }
+        ran = true;
         TraceSlice slice(&trace, name, {{"config", run.config.name}, {"light", std::to_string(light)}});
         if (!lightRun && noReference.empty()) {
           progress(mine, total, fmt::format("{}: reference {}", run.sceneName, run.reference.name()), nullptr);
@@ -162,8 +201,20 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
         progress(mine + 1, total, name, &summary.records.back());
       }
     }
+    LightsPictures ofAllLights(run, options, trace);
+    for (const ResolvedTechnique& technique : lightsPictureTechniques(run)) {
+      if (!isMine(pictures++)) continue;
+      const std::filesystem::path path = ofAllLights.pathOf(technique);
+      if (options.resume && fileStamp(path)) {
+        summary.lightsPictures.push_back({label(run, technique), path, {}, false});
+        continue;
+      }
+      ran = true;
+      progress(index, total, fmt::format("all lights: {}", path.filename().string()), nullptr);
+      summary.lightsPictures.push_back(ofAllLights.make(technique));
+    }
   }
-  if (summary.kept < summary.records.size()) {
+  if (ran) {
     summary.trace = options.out / fmt::format("trace{}.json", shard);
     trace.write(summary.trace);
   }
