@@ -145,38 +145,6 @@ TEST_F(ViewerMoves, TheNextCameraIsTaken) {
   expectNear(pose("c.json").position, {0.0, 1.0, 3.0});
 }
 
-TEST_F(ViewerMoves, TheNextLightIsTaken) {
-  Json config = json("config.json");
-  config["lights"] = {{{"type", "spot"}, {"position", {-1, 7, 0.6}}, {"cone_half_angle_degrees", 45}},
-                      {{"type", "directional"}, {"position", {5, 7, 0}}}};
-  folder_.write("lights.json", config.dump());
-  play(
-      "key H\nkey 2\nwait 3\nsave a.json\nkey J\nwait 3\nsave b.json\nwait 20\nscreenshot view.png\nkey J\nwait 3\n"
-      "save c.json\n",
-      "lights.json");
-  EXPECT_EQ(json("a.json")["lights"][0]["type"], "spot");
-  EXPECT_EQ(json("b.json")["lights"][0]["type"], "directional");
-  expectNear(pose("b.json").light, {5.0, 7.0, 0.0});
-  EXPECT_EQ(json("c.json")["lights"][0], json("a.json")["lights"][0]);
-  EXPECT_TRUE(bytes("view.png") == runnersPicture("b.json"));
-}
-
-TEST_F(ViewerMoves, ALightOfAnotherShapeIsShownWithoutAnotherPlan) {
-  Json config = json("config.json");
-  config["lights"] = {{{"type", "spot"},
-                       {"position", {-1, 7, 0.6}},
-                       {"cone_half_angle_degrees", 45},
-                       {"source", {{"shape", "rectangle"}, {"size", {1, 1}}}}},
-                      {{"type", "spot"},
-                       {"position", {-1, 7, 0.6}},
-                       {"cone_half_angle_degrees", 45},
-                       {"source", {{"shape", "disc"}, {"radius", 1}}}}};
-  folder_.write("lights.json", config.dump());
-  play("key H\nkey E\nkey 4\nwait 3\nkey J\nwait 20\nscreenshot view.png\nsave view.json\n", "lights.json");
-  EXPECT_EQ(json("view.json")["lights"][0]["source"]["shape"], "disc");
-  EXPECT_TRUE(bytes("view.png") == runnersPicture("view.json"));
-}
-
 TEST_F(ViewerMoves, TheLightTurnsShiftsAndComesNearer) {
   play(
       "save a.json\nmouse 100 100\nhold L\nmouse 124 100\nsave turned.json\nmouse 124 112\nsave raised.json\nwheel 1\n"

@@ -86,6 +86,9 @@ Stage& App::stageOf(int reduction) {
   if (!staged.stage) {
     const glm::ivec2 size = glm::max(stageSize_ / reduction, glm::ivec2(1));
     SessionSetup setup{document_.run.scene, pose_.light, pose_.camera, size, document_.run.config.plan, {}};
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+      if (i != light_) setup.moreLights.push_back(lights_[i]);
+    }
     setup.sharePasses = true;  // two techniques that ask for the same depth map get one
     const std::vector<glm::dmat4> now = worlds();
     for (std::size_t i = 0; i < now.size(); ++i) setup.scene.instances[i].world = now[i];
@@ -193,14 +196,13 @@ const TextureResource* App::other(Stage& stage, bool visibility) {
     return visibility ? &session.visibilityTexture(*stage.picture()) : &session.shadedTexture(*stage.picture());
   }
   if (!stage.render(before_, document_.techniques[before_].technique, false)) return nullptr;
-  const Slot slot = *stage.entry(before_).slot;
-  return visibility ? &session.visibilityTexture(slot) : &session.shadedTexture(slot);
+  return visibility ? &session.visibilityTexture(*stage.entry(before_).slot) : &stage.shaded(before_);
 }
 
 PresentView App::view(Stage& stage, std::size_t shown, Panels& panels) {
   Session& session = stage.session();
   const Slot slot = *stage.entry(shown).slot;
-  PresentView view{.left = &session.shadedTexture(slot)};
+  PresentView view{.left = &stage.shaded(shown)};
   const auto textures = session.textures(slot);
   if (texture_ >= static_cast<int>(textures.size())) texture_ = -1;
   compared_ = false;
@@ -216,6 +218,8 @@ PresentView App::view(Stage& stage, std::size_t shown, Panels& panels) {
   if (difference_) {
     view = {.mode = PresentMode::difference, .left = &session.visibilityTexture(slot), .right = with};
   } else if (split_) {
+    // There is a reference for one light: beside it the technique's picture of that light.
+    if (againstReference_) view.left = &session.shadedTexture(slot);
     view.right = with;
     view.divider = divider_;
   } else {

@@ -137,6 +137,8 @@ class App {
   void moveNode(const glm::dvec3& by);
   glm::dvec3 nodeCentre() const;
   std::string lightName() const;
+  /// All lights as they are now, in the config's order.
+  std::vector<Light> lightsNow() const;
   void animate(double seconds);
   void fly(double seconds);
   void resetView();
@@ -161,7 +163,8 @@ class App {
   std::shared_ptr<Libraries> libraries_;
   Document document_;
   Pose pose_;
-  std::size_t light_ = 0;
+  std::size_t light_ = 0;      ///< which one is worked with: its pose is pose_.light
+  std::vector<Light> lights_;  ///< all, as they were left
   std::size_t cameraIndex_ = 0;
   std::vector<std::string> nodes_;  ///< names, each once
   std::optional<std::size_t> node_;

@@ -127,7 +127,7 @@ std::string App::stateAsConfig() const {
   config["scene"] = writeSceneChoice(scene);
   config["plan"] = writeObject(*planOverridesTable(), &run.plan);
   config["camera"] = writeObject(*cameraTable(), &pose_.camera);
-  config["lights"] = Json::array({writeObject(*lightTable(), &pose_.light)});
+  for (const Light& light : lightsNow()) config["lights"].push_back(writeObject(*lightTable(), &light));
   config["output"] = {{"size", {size_.x, size_.y}}, {"images", {"shaded", "visibility", "error"}}};
   config["reference"] = asConfigEntry(document_.run.reference);
   config["baseline"] = asConfigEntry(document_.run.baseline);
@@ -171,6 +171,7 @@ std::string App::frameLine() const {
   line["events"] = events_;
   line["technique"] = document_.techniques[current_].technique.name();
   line["shown"] = lastGood_ ? Json(document_.techniques[*lastGood_].technique.name()) : Json(nullptr);
+  line["light"] = light_;
   line["compiling"] = compiling_;
   line["size"] = {size_.x, size_.y};
   line["scale"] = scale_;

@@ -111,7 +111,9 @@ void App::press(Action action) {
       playing_ = false;
       return animate(action == Action::stepForwards ? kStepSeconds : -kStepSeconds);
     case Action::resetView:
-      return resetView();
+      resetView();
+      if (lights_.size() > 1) rebuildStages();  // the others may have been moved too
+      return;
     case Action::nextParameter:
     case Action::previousParameter: {
       const std::size_t count = editableFields(document_.techniques[current_].technique).size();
@@ -288,10 +290,17 @@ std::string App::lightName() const {
   return text + fmt::format(", radius {:.3g} m", l.type == LightType::point ? l.radius : l.source.radius);
 }
 
+std::vector<Light> App::lightsNow() const {
+  std::vector<Light> lights = lights_;
+  lights.at(light_) = pose_.light;
+  return lights;
+}
+
 void App::nextLight() {
   if (document_.run.lights.size() < 2) return say("there is one light");
-  light_ = (light_ + 1) % document_.run.lights.size();
-  pose_.light = document_.run.lights[light_];
+  lights_ = lightsNow();
+  light_ = (light_ + 1) % lights_.size();
+  pose_.light = lights_[light_];
   say(lightName());
   moved(Moved::light);
   rebuildStages();  // another kind or shape of source is another structure

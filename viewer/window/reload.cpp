@@ -59,6 +59,7 @@ void App::resetView() {
   reduction_ = 1;
   const SceneChoice& scene = document_.run.config.scenes.at(document_.scene);
   pose_ = {document_.run.lights.at(light_), document_.run.camera, {scene.moves.begin(), scene.moves.end()}, scene.time};
+  lights_ = document_.run.lights;
   playing_ = false;
   for (const Moved what : {Moved::camera, Moved::light, Moved::nodes}) moved(what);
 }

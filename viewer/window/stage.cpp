@@ -22,14 +22,27 @@ void update(std::vector<PassReport>& kept, std::vector<PassReport>&& now, bool t
 
 }  // namespace
 
+void Stage::setUp(StageEntry& entry, const ResolvedTechnique& technique) {
+  entry.slot = session_.addSlot(technique.technique, technique.parameters);
+  entry.failure = refusalOf(*entry.slot);
+  if (!entry.failure.empty() || session_.lights() < 2) return;
+  std::vector<Slot> all{*entry.slot};
+  for (std::size_t light = 1; light < session_.lights(); ++light) {
+    const Slot slot = session_.addSlot(technique.technique, technique.parameters, light);
+    if (!refusalOf(slot).empty()) continue;
+    entry.others.push_back(slot);
+    all.push_back(slot);
+  }
+  if (!entry.others.empty()) entry.sum = session_.addSum(all);
+}
+
 bool Stage::render(std::size_t index, const ResolvedTechnique& technique, bool timePasses) {
   StageEntry& e = entries_.at(index);
   if (!e.failure.empty()) return false;
   try {
     const bool cold = !e.slot;
     if (cold) {
-      e.slot = session_.addSlot(technique.technique, technique.parameters);
-      e.failure = refusalOf(*e.slot);
+      setUp(e, technique);
       if (!e.failure.empty()) return false;
     }
     passesRun_ += session_.runShared().counters.passesRun;
@@ -47,7 +60,9 @@ bool Stage::render(std::size_t index, const ResolvedTechnique& technique, bool t
     e.timed = e.timed || timePasses;
     passesRun_ += report.counters.passesRun;
     update(e.passes, std::move(report.passes), timePasses);
+    for (const Slot other : e.others) passesRun_ += session_.runTechnique(other).counters.passesRun;
     passesRun_ += session_.runShading(*e.slot).counters.passesRun;
+    if (e.sum) passesRun_ += session_.runShading(*e.sum).counters.passesRun;
     return true;
   } catch (const std::exception& error) {
     e.failure = error.what();
@@ -63,6 +78,7 @@ std::string Stage::change(std::size_t index, const ResolvedTechnique& technique)
   }
   try {
     session_.setParameters(*e.slot, technique.technique, technique.parameters);
+    for (const Slot other : e.others) session_.setParameters(other, technique.technique, technique.parameters);
     e.timed = false;
     e.failure = refusalOf(*e.slot);
     return e.failure;
@@ -79,6 +95,7 @@ std::string Stage::replace(std::size_t index, const ResolvedTechnique& technique
   }
   try {
     session_.replaceSlot(*e.slot, technique.technique, technique.parameters);
+    for (const Slot other : e.others) session_.replaceSlot(other, technique.technique, technique.parameters);
     e.timed = false;
     e.failure = refusalOf(*e.slot);
     return {};

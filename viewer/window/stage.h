@@ -12,7 +12,9 @@ namespace gnomon {
 
 /// What one technique does on a stage.
 struct StageEntry {
-  std::optional<Slot> slot = {};        ///< set up on first use
+  std::optional<Slot> slot = {};        ///< of the light that is worked with; set up on first use
+  std::vector<Slot> others = {};        ///< of the other lights, those that it does not refuse
+  std::optional<Slot> sum = {};         ///< the picture of all of them, where there are others
   std::string failure = {};             ///< why it shows nothing; empty while it works
   std::vector<PassReport> passes = {};  ///< the last run of each
   bool timed = false;                   ///< passes have been timed one by one
@@ -22,12 +24,18 @@ struct StageEntry {
 
 class Stage {
  public:
-  /// A current context is required. Throws Error.
+  /// The setup's first light is the one that is worked with: measured, compared, looked into. A current context is required.
+  /// Throws Error.
   Stage(SessionSetup setup, std::size_t techniques) : session_(std::move(setup)), entries_(techniques) {}
 
   Session& session() { return session_; }
   const Session& session() const { return session_; }
   const StageEntry& entry(std::size_t index) const { return entries_.at(index); }
+  /// What a technique makes of all lights, of the last frame.
+  const TextureResource& shaded(std::size_t index) const {
+    const StageEntry& e = entries_.at(index);
+    return session_.shadedTexture(e.sum ? *e.sum : *e.slot);
+  }
   bool isCold(std::size_t index) const { return !entries_.at(index).slot && entries_.at(index).failure.empty(); }
 
   /// Runs what changed, and sets up on first use. With `timePasses` every pass runs once and is timed by itself, later ones
@@ -50,6 +58,7 @@ class Stage {
 
  private:
   std::string refusalOf(Slot slot) const { return session_.support(slot).refusal; }
+  void setUp(StageEntry& entry, const ResolvedTechnique& technique);
 
   Session session_;
   std::vector<StageEntry> entries_;
