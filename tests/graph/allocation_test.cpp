@@ -11,8 +11,8 @@ namespace {
 
 /// Calls of operator new in one frame after a few that grew what grows. `move` changes the session before each frame.
 template <class Move>
-std::size_t perFrame(const std::string& sceneParameters, const Move& move) {
-  Session session(builtinSetup("sphere_grid", {60, 45}, sceneParameters));
+std::size_t perFrame(const std::string& scene, const std::string& sceneParameters, const Move& move) {
+  Session session(builtinSetup(scene, {60, 45}, sceneParameters));
   const Slot slot = addSlot(session, "shadow_map");
   std::size_t count = 0;
   for (int i = 0; i < 4; ++i) {
@@ -45,15 +45,19 @@ TEST(Allocation, TheCounterCounts) {
 }
 
 TEST(Allocation, AStaticFrameTakesNothing) {
-  EXPECT_EQ(perFrame("{}", nothing), 0U);
+  EXPECT_EQ(perFrame("sphere_grid", "{}", nothing), 0U);
 }
 
 TEST(Allocation, AMovingLightTakesNothing) {
-  EXPECT_EQ(perFrame(R"({"count": 20})", moveLight), 0U);
+  EXPECT_EQ(perFrame("sphere_grid", R"({"count": 20})", moveLight), 0U);
+}
+
+TEST(Allocation, AMovingLightOverBoxesThatItsReachCutsTakesNothing) {
+  EXPECT_EQ(perFrame("pillars", "{}", moveLight), 0U);
 }
 
 TEST(Allocation, AMovingCameraTakesNothing) {
-  EXPECT_EQ(perFrame(R"({"count": 20})", moveCamera), 0U);
+  EXPECT_EQ(perFrame("sphere_grid", R"({"count": 20})", moveCamera), 0U);
 }
 
 }  // namespace

@@ -14,14 +14,14 @@ using namespace stability;
 constexpr const char* kDepthMap = "gnomon/depth_map.glsl";
 
 /// The cell fails, and one of its reasons begins with `beginning`.
-testing::AssertionResult failsWith(const CellReport& cell, const std::string& beginning) {
+testing::AssertionResult failsWith(const CellReport& cell, const std::string& part) {
   if (cell.outcome != Outcome::fail) return testing::AssertionFailure() << cell.hardCase << ": " << outcomeName(cell.outcome);
   std::string all;
   for (const std::string& reason : cell.reasons) {
-    if (reason.rfind(beginning, 0) == 0) return testing::AssertionSuccess();
+    if (reason.find(part) != std::string::npos) return testing::AssertionSuccess();
     all += "\n  " + reason;
   }
-  return testing::AssertionFailure() << cell.hardCase << ": no reason begins with \"" << beginning << "\" among" << all;
+  return testing::AssertionFailure() << cell.hardCase << ": no reason holds \"" << part << "\" among" << all;
 }
 
 TEST(Planted, UnalteredCopiesPass) {  // what is caught below is caught because of what was altered
@@ -73,7 +73,7 @@ TEST(Planted, KernelThatWrapsAroundIsAcne) {
 
 TEST(Planted, MaskIgnoredIsDarkOutsideIt) {
   PlantedTechnique planted("pcf", {{kDepthMap, "if (texelFetch(gMask, r.pixel, 0).r == 0.0) discard;", ""}});
-  EXPECT_TRUE(failsWith(planted.check("world_moved_1e6"), "dark outside the receiver mask"));
+  EXPECT_TRUE(failsWith(planted.check("world_moved_1e6"), "not 1 outside the receiver mask"));
 }
 
 TEST(Planted, VisibilityOfTwoIsOutOfRange) {

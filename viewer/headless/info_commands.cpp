@@ -75,20 +75,36 @@ int listCommand(const CommonOptions& common) {
   if (common.json) {
     Json list = Json::array();
     for (const RegisteredTechnique& t : registry.techniques()) {
-      list.push_back({{"name", t.declaration.name},
+      list.push_back({{"kind", "technique"},
+                      {"name", t.declaration.name},
                       {"title", t.declaration.title},
                       {"role", roleName(t.declaration.role)},
                       {"file", t.file.string()}});
+    }
+    for (const RegisteredComponent& c : registry.components()) {
+      list.push_back({{"kind", "component"},
+                      {"name", c.declaration.name},
+                      {"title", c.declaration.title},
+                      {"axis", axisName(c.declaration.axis)},
+                      {"file", c.file.string()}});
     }
     fmt::print("{}\n", list.dump(2));
     return 0;
   }
   std::size_t width = 0;
   for (const RegisteredTechnique& t : registry.techniques()) width = std::max(width, t.declaration.name.size());
+  for (const RegisteredComponent& c : registry.components()) width = std::max(width, c.declaration.name.size());
   for (const RegisteredTechnique& t : registry.techniques()) {
     const std::string role =
         t.declaration.role == TechniqueRole::technique ? "" : fmt::format("  ({})", roleName(t.declaration.role));
     fmt::print("{:<{}}  {}{}\n", t.declaration.name, width, t.declaration.title, role);
+  }
+  if (!registry.components().empty()) fmt::print("\ncomponents, for \"compose\" in technique files\n");
+  for (const Axis axis : kAxes) {
+    for (const RegisteredComponent& c : registry.components()) {
+      if (c.declaration.axis == axis)
+        fmt::print("{:<{}}  {:<14}  {}\n", c.declaration.name, width, axisName(axis), c.declaration.title);
+    }
   }
   return 0;
 }

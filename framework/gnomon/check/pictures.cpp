@@ -16,7 +16,7 @@ namespace {
 /// One frame of a slot against the contract, every target looked through for NaN and infinity.
 std::string faultOf(Session& session, Slot slot) {
   session.frame(slot, {.checkFinite = true});
-  return fault(session.visibility(slot), session.receiverMask());
+  return visibilityFault(session.visibility(slot), session.receiverMask());
 }
 
 // --- parameters ---

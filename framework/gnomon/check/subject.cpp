@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -90,10 +89,6 @@ Image renderFresh(const Subject& subject, const SessionSetup& setup) {
   return renderAgain(session, addSlot(session, subject));
 }
 
-bool sameBits(const Image& a, const Image& b) {
-  return a.data.size() == b.data.size() && std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
-}
-
 std::string difference(const Image& a, const Image& b) {
   std::size_t count = 0;
   std::size_t first = 0;
@@ -105,28 +100,6 @@ std::string difference(const Image& a, const Image& b) {
   const auto width = static_cast<std::size_t>(a.width);
   return fmt::format("{} of {} pixels differ, the first at ({}, {}) by {:.3g}", count, a.data.size(), first % width,
                      first / width, static_cast<double>(a.data[first]) - static_cast<double>(b.data[first]));
-}
-
-std::string fault(const Image& visibility, const Image& mask) {
-  if (visibility.data.size() != mask.data.size()) return "V is not of the output's size";
-  const auto wrong = [&](std::size_t i) -> const char* {
-    const float v = visibility.data[i];
-    if (!std::isfinite(v)) return "not finite; look for divisions by zero, roots and logarithms of negative numbers";
-    if (v < 0.0f || v > 1.0f) return "out of [0,1]; V is the lit part of the source: clamp it";
-    if (mask.data[i] == 0.0f && v != 1.0f) return "not 1 outside the receiver mask; discard there and clear to 1";
-    return nullptr;
-  };
-  std::size_t count = 0;
-  std::size_t first = 0;
-  for (std::size_t i = visibility.data.size(); i-- > 0;) {
-    if (wrong(i) == nullptr) continue;
-    ++count;
-    first = i;
-  }
-  if (count == 0) return {};
-  const auto width = static_cast<std::size_t>(visibility.width);
-  return fmt::format("V is {:.6g} at pixel ({}, {}), wrong at {} pixels in all: {}", visibility.data[first], first % width,
-                     first / width, count, wrong(first));
 }
 
 Finding passed(std::string text) {

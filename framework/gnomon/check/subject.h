@@ -7,6 +7,7 @@
 #include "gnomon/base/json.h"
 #include "gnomon/check/check.h"
 #include "gnomon/session.h"
+#include "gnomon/stability/promises.h"
 
 namespace gnomon::check {
 
@@ -39,12 +40,8 @@ Image renderAgain(Session& session, Slot slot);
 /// A fresh session's first frame, with its own preset.
 Image renderFresh(const Subject& subject, const SessionSetup& setup);
 
-bool sameBits(const Image& a, const Image& b);
 /// "12 of 3072 pixels differ, the first at (3, 4) by 0.25"; images of one shape that differ.
 std::string difference(const Image& a, const Image& b);
-
-/// What is wrong with V: not of the mask's size, not finite, out of [0,1], or not 1 outside the mask. Empty: nothing.
-std::string fault(const Image& visibility, const Image& mask);
 
 Finding passed(std::string text);
 Finding failed(std::string text);

@@ -192,7 +192,6 @@ void layOut(Graph::State& state);
 
 // texels.cpp
 std::size_t texelCount(const TextureInfo& info);  ///< of all layers
-std::size_t bytesOf(const TextureInfo& info);
 void readInto(const TextureResource& texture, std::vector<float>& out, std::vector<std::uint8_t>& bytes);
 void readIntegersInto(const TextureResource& texture, std::vector<std::uint32_t>& out);
 /// As many values as the texture has; throws Error otherwise.

@@ -64,6 +64,7 @@ struct TextureInfo {
   /// and none of a history.
   bool transient = false;
 };
+std::size_t bytesOf(const TextureInfo& info);  ///< of all layers
 
 /// Handles. They mean something only to the graph that gave them.
 struct Texture {

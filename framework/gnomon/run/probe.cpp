@@ -49,11 +49,6 @@ std::vector<KindOfLight> kindsOfLight(const Light& at) {
           })};
 }
 
-std::size_t bytesOf(const TextureInfo& info) {
-  const auto texels = static_cast<std::size_t>(info.size.x) * static_cast<std::size_t>(info.size.y);
-  return texels * static_cast<std::size_t>(formatFacts(info.format).bytes);
-}
-
 /// The slot's textures without those that every slot shares.
 std::vector<TextureFacts> ownTextures(Session& session, Slot slot) {
   const auto all = session.textures(slot);

@@ -13,46 +13,63 @@ double signedDistance(const glm::dvec4& plane, const glm::dvec3& p) {
   return glm::dot(glm::dvec3(plane), p) + plane.w;
 }
 
-/// The convex polygon of points in a plane: by angle around their mean.
-std::vector<glm::dvec3> capOf(std::vector<glm::dvec3> points, const glm::dvec3& normal) {
+/// Points in a plane, into the order of a convex polygon: by angle around their mean.
+void sortAround(std::span<glm::dvec3> points, const glm::dvec3& normal) {
   glm::dvec3 mean(0.0);
   for (const glm::dvec3& p : points) mean += p / static_cast<double>(points.size());
   const Axes axes = axesAround(glm::normalize(normal));
   const auto angle = [&](const glm::dvec3& p) { return std::atan2(glm::dot(p - mean, axes.y), glm::dot(p - mean, axes.x)); };
   std::sort(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) { return angle(a) < angle(b); });
-  return points;
 }
 
 }  // namespace
 
-Polyhedron boxPolyhedron(const Bounds& bounds) {
-  const auto face = [&](int a, int b, int c, int d) {
-    return std::vector<glm::dvec3>{bounds.corner(a), bounds.corner(b), bounds.corner(c), bounds.corner(d)};
-  };
-  return {face(0, 2, 6, 4), face(1, 3, 7, 5), face(0, 1, 5, 4), face(2, 3, 7, 6), face(0, 1, 3, 2), face(4, 5, 7, 6)};
+std::span<const glm::dvec3> ConvexPolyhedron::face(std::size_t i) const {
+  const std::size_t begin = i == 0 ? 0 : ends_[i - 1];
+  return std::span(corners_).subspan(begin, ends_[i] - begin);
 }
 
-Polyhedron clipped(const Polyhedron& polyhedron, const glm::dvec4& plane, double tolerance) {
-  Polyhedron result;
-  std::vector<glm::dvec3> cut;
-  for (const std::vector<glm::dvec3>& face : polyhedron) {
+void ConvexPolyhedron::closeFace() {
+  if (corners_.size() > (ends_.empty() ? 0 : ends_.back())) ends_.push_back(corners_.size());
+}
+
+void ConvexPolyhedron::setBox(const Bounds& bounds) {
+  corners_.clear();
+  ends_.clear();
+  constexpr int kFaces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
+  for (const auto& face : kFaces) {
+    for (const int corner : face) corners_.push_back(bounds.corner(corner));
+    closeFace();
+  }
+}
+
+void ConvexPolyhedron::clip(const glm::dvec4& plane, double tolerance) {
+  std::swap(corners_, whole_);
+  std::swap(ends_, wholeEnds_);
+  corners_.clear();
+  ends_.clear();
+  cut_.clear();
+  std::size_t begin = 0;
+  for (const std::size_t end : wholeEnds_) {
     // Sutherland and Hodgman 1974
-    std::vector<glm::dvec3> kept;
-    for (std::size_t i = 0; i < face.size(); ++i) {
-      const glm::dvec3& a = face[i];
-      const glm::dvec3& b = face[(i + 1) % face.size()];
+    for (std::size_t i = begin; i < end; ++i) {
+      const glm::dvec3& a = whole_[i];
+      const glm::dvec3& b = whole_[i + 1 < end ? i + 1 : begin];
       const double da = signedDistance(plane, a);
       const double db = signedDistance(plane, b);
-      if (da >= -tolerance) kept.push_back(a);
+      if (da >= -tolerance) corners_.push_back(a);
       if ((da >= -tolerance) != (db >= -tolerance)) {
-        kept.push_back(glm::mix(a, b, std::clamp(da / (da - db), 0.0, 1.0)));
-        cut.push_back(kept.back());
+        corners_.push_back(glm::mix(a, b, std::clamp(da / (da - db), 0.0, 1.0)));
+        cut_.push_back(corners_.back());
       }
     }
-    if (!kept.empty()) result.push_back(std::move(kept));
+    closeFace();
+    begin = end;
   }
-  if (cut.size() > 2) result.push_back(capOf(std::move(cut), glm::dvec3(plane)));
-  return result;
+  if (cut_.size() < 3) return;
+  sortAround(cut_, glm::dvec3(plane));
+  corners_.insert(corners_.end(), cut_.begin(), cut_.end());
+  closeFace();
 }
 
 double distanceToTriangle(const glm::dvec3& p, const Triangle& triangle) {

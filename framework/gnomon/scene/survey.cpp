@@ -136,6 +136,7 @@ std::vector<VisibleReceiver> visibleReceivers(const Scene& scene, const std::vec
 void visitReceiversWithin(const Scene& scene, const std::vector<Bounds>& instanceBounds, const glm::dvec3& origin,
                           std::span<const glm::dvec4> planes, const ReceiverVisitor& visit) {
   thread_local std::vector<glm::dvec3> points;  // kept, so that frames take no memory; a visitor starts no other visit
+  thread_local ConvexPolyhedron part;
   const auto add = [&](const glm::dvec3& p) {
     const glm::dvec3 corner = p + origin;
     if (std::find(points.begin(), points.end(), corner) == points.end()) points.push_back(corner);
@@ -153,9 +154,9 @@ void visitReceiversWithin(const Scene& scene, const std::vector<Bounds>& instanc
         for (int c = 0; c < 8; ++c) add(relative.corner(c));
         break;
       case BoxSide::cut: {
-        Polyhedron part = boxPolyhedron(relative);
-        for (const glm::dvec4& plane : planes) part = clipped(part, plane, clipTolerance(relative, plane));
-        for (const auto& face : part) std::for_each(face.begin(), face.end(), add);
+        part.setBox(relative);
+        for (const glm::dvec4& plane : planes) part.clip(plane, clipTolerance(relative, plane));
+        for (const glm::dvec3& corner : part.corners()) add(corner);
       }
     }
     if (!points.empty()) visit(i, points);

@@ -59,22 +59,29 @@ bool has(const std::vector<glm::dvec3>& points, const glm::dvec3& p) {
   return std::any_of(points.begin(), points.end(), [&](const glm::dvec3& q) { return glm::length(p - q) < 1e-9; });
 }
 
-TEST(Clipped, KeepsAWholeBoxInside) {
+TEST(ConvexPolyhedron, KeepsAWholeBoxInside) {
   Bounds box;
   box.add({-1.0, -1.0, -1.0});
   box.add({1.0, 1.0, 1.0});
-  EXPECT_EQ(clipped(boxPolyhedron(box), {1.0, 0.0, 0.0, 2.0}, 0.0).size(), 6u);
-  EXPECT_TRUE(clipped(boxPolyhedron(box), {1.0, 0.0, 0.0, -2.0}, 0.0).empty());
+  ConvexPolyhedron part;
+  part.setBox(box);
+  part.clip({1.0, 0.0, 0.0, 2.0}, 0.0);
+  EXPECT_EQ(part.faces(), 6u);
+  part.clip({1.0, 0.0, 0.0, -2.0}, 0.0);
+  EXPECT_EQ(part.faces(), 0u);
+  EXPECT_TRUE(part.corners().empty());
 }
 
-TEST(Clipped, ACornerCutOffLeavesATriangularCap) {
+TEST(ConvexPolyhedron, ACornerCutOffLeavesATriangularCap) {
   Bounds box;
   box.add({0.0, 0.0, 0.0});
   box.add({1.0, 1.0, 1.0});
   const glm::dvec3 n = -glm::normalize(glm::dvec3(1.0));
-  const Polyhedron part = clipped(boxPolyhedron(box), {n, 2.5 / std::sqrt(3.0)}, 0.0);  // x + y + z <= 2.5
-  ASSERT_EQ(part.size(), 7u);
-  for (const glm::dvec3& p : part.back()) EXPECT_NEAR(p.x + p.y + p.z, 2.5, 1e-12);
+  ConvexPolyhedron part;
+  part.setBox(box);
+  part.clip({n, 2.5 / std::sqrt(3.0)}, 0.0);  // x + y + z <= 2.5
+  ASSERT_EQ(part.faces(), 7u);
+  for (const glm::dvec3& p : part.face(6)) EXPECT_NEAR(p.x + p.y + p.z, 2.5, 1e-12);
 }
 
 TEST(DistanceToTriangle, OfFaceEdgeAndCorner) {

@@ -10,6 +10,7 @@
 
 #include "gnomon/base/json.h"
 #include "gnomon/stability/oracle.h"
+#include "gnomon/stability/promises.h"
 
 namespace gnomon::stability {
 
@@ -76,10 +77,6 @@ Rendering renderAlone(Registry& registry, const std::string& name, const Case& h
   }
 }
 
-bool sameBits(const Image& a, const Image& b) {
-  return a.data.size() == b.data.size() && std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
-}
-
 /// What is common to the techniques of a case.
 struct Stage {
   SessionSetup setup;
@@ -102,30 +99,6 @@ void fail(CellReport& cell, std::string reason) {
 }
 
 /// V is a number in [0,1], and 1 outside the mask.
-void checkRange(const Image& v, const Image& mask, CellReport& cell) {
-  if (v.data.size() != mask.data.size()) return fail(cell, "V is not of the output's size");
-  const auto report = [&](std::size_t bad, std::size_t first, const char* what) {
-    if (bad == 0) return;
-    const auto width = static_cast<std::size_t>(v.width);
-    fail(cell, fmt::format("{}: V is {} at pixel ({}, {}), and so at {} pixels", what, v.data[first], first % width,
-                           first / width, bad));
-  };
-  std::size_t notFinite = 0, outOfRange = 0, outside = 0;
-  std::size_t firstNotFinite = 0, firstOutOfRange = 0, firstOutside = 0;
-  for (std::size_t i = v.data.size(); i-- > 0;) {
-    if (!std::isfinite(v.data[i])) {
-      ++notFinite, firstNotFinite = i;
-    } else if (v.data[i] < 0.0f || v.data[i] > 1.0f) {
-      ++outOfRange, firstOutOfRange = i;
-    } else if (mask.data[i] == 0.0f && v.data[i] != 1.0f) {
-      ++outside, firstOutside = i;
-    }
-  }
-  report(notFinite, firstNotFinite, "not finite");
-  report(outOfRange, firstOutOfRange, "out of [0,1]");
-  report(outside, firstOutside, "dark outside the receiver mask");
-}
-
 void checkClasses(const Stage& stage, const Rendering& rendering, bool isFloor, CellReport& cell) {
   std::optional<MapOracle> map;
   if (rendering.facts.readsMap) map.emplace(stage.setup, stage.truth.faces(), rendering.facts);
@@ -192,7 +165,7 @@ CellReport checkCell(const Case& hardCase, const Stage& stage, const RegisteredT
     return cell;
   }
   for (std::size_t i = 0; i < stage.truth.faults().size() && i < 3; ++i) fail(cell, stage.truth.faults()[i]);
-  checkRange(first.visibility, stage.mask, cell);
+  if (const std::string fault = visibilityFault(first.visibility, stage.mask); !fault.empty()) fail(cell, fault);
   if (first.visibility.data.size() != stage.mask.data.size()) return cell;
   const auto compare = [&](const Rendering& other, const char* how) {
     if (!other.failure.empty() || !other.refusal.empty()) {
