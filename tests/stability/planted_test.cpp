@@ -13,7 +13,7 @@ using namespace stability;
 
 constexpr const char* kDepthMap = "gnomon/depth_map.glsl";
 
-/// The cell fails, and one of its reasons begins with `beginning`.
+/// The cell fails, and one of its reasons holds `part`.
 testing::AssertionResult failsWith(const CellReport& cell, const std::string& part) {
   if (cell.outcome != Outcome::fail) return testing::AssertionFailure() << cell.hardCase << ": " << outcomeName(cell.outcome);
   std::string all;

@@ -78,6 +78,7 @@ template <typename Visitor>
 void keys(Visitor& visit, PassTime& pass) {
   visit("name", pass.name);
   visit("ms", pass.ms);
+  visit("wall_ms", pass.wallMs);
 }
 
 template <typename Visitor>
@@ -85,6 +86,43 @@ void keys(Visitor& visit, TimeRecord& time) {
   visit("timer", time.timer);
   visit("regimes", time.regimes);
   visit("passes", time.passes);
+  visit("pass_sum_ms", time.passSumMs);
+  visit("gap_ms", time.gapMs);
+  visit("repeats", time.repeats);
+}
+
+template <typename Visitor>
+void keys(Visitor& visit, ErrorSplits& splits) {
+  visit("acne", splits.acne);
+  visit("leak", splits.leak);
+  visit("detachment", splits.detachment);
+  visit("penumbra", splits.penumbra);
+  visit("shimmer", splits.shimmer);
+}
+
+template <typename Visitor>
+void keys(Visitor& visit, FlipFigures& flip) {
+  visit("mean", flip.mean);
+  visit("p99", flip.p99);
+}
+
+template <typename Visitor>
+void keys(Visitor& visit, ReferenceRecord& reference) {
+  visit("rays", reference.rays);
+  visit("rays_saved", reference.raysSaved);
+  visit("standard_error", reference.standardError);
+  visit("cosine_floor", reference.cosineFloor);
+}
+
+template <typename Visitor>
+void keys(Visitor& visit, PassWork& pass) {
+  visit("name", pass.name);
+  visit("primitives", pass.primitives);
+  visit("fragments", pass.fragments);
+  visit("texel_reads", pass.texelReads);
+  visit("texels_written", pass.texelsWritten);
+  visit("bytes_written", pass.bytesWritten);
+  visit("rays", pass.rays);
 }
 
 template <typename Visitor>
@@ -96,7 +134,10 @@ void keys(Visitor& visit, WorkCounters& work) {
   visit("fragments", work.fragments);
   visit("texel_reads", work.texelReads);
   visit("texels_written", work.texelsWritten);
+  visit("bytes_written", work.bytesWritten);
   visit("rays", work.rays);
+  visit("reads_by_format", work.readsByFormat);
+  visit("passes", work.passes);
 }
 
 template <typename Visitor>
@@ -130,6 +171,9 @@ void keys(Visitor& visit, JobRecord& record) {
   visit("status", record.status);
   visit("reason", record.reason);
   visit("error", record.error);
+  visit("splits", record.splits);
+  visit("flip", record.flip);
+  visit("reference", record.reference);
   visit("time", record.time);
   visit("work", record.work);
   visit("memory_bytes", record.memoryBytes);

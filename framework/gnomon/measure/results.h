@@ -11,6 +11,8 @@
 
 #include "gnomon/measure/clocks.h"
 #include "gnomon/measure/error.h"
+#include "gnomon/measure/flip.h"
+#include "gnomon/measure/splits.h"
 #include "gnomon/measure/timing.h"
 
 namespace gnomon {
@@ -33,7 +35,8 @@ struct PlanEntry {
 /// Time of one pass, with a finish after each: sums to more than the total, which is measured without.
 struct PassTime {
   std::string name;
-  std::optional<double> ms = std::nullopt;
+  std::optional<double> ms = std::nullopt;      ///< median, on the record's timer where a pass can be timed by it, else wall
+  std::optional<double> wallMs = std::nullopt;  ///< median
 
   bool operator==(const PassTime&) const = default;
 };
@@ -42,15 +45,45 @@ struct TimeRecord {
   std::optional<Clock> timer;                    ///< the clock of the figures and the ratios
   std::map<std::string, TimingFigures> regimes;  ///< dynamic, animated, camera, static; in "static" the ratio is always null
   std::vector<PassTime> passes;
+  std::optional<double> passSumMs;  ///< of `passes`
+  std::optional<double> gapMs;      ///< passSumMs less the dynamic regime's median: what the finishes between passes cost
+  std::optional<int> repeats;       ///< processes whose blocks the figures hold (--repeat)
 
   bool operator==(const TimeRecord&) const = default;
 };
 
-/// What one frame of the technique did; from the instrumented build of the same shaders.
+/// What one pass did in a frame in which everything ran.
+struct PassWork {
+  std::string name;
+  std::optional<std::uint64_t> primitives = std::nullopt, fragments = std::nullopt, texelReads = std::nullopt,
+                               texelsWritten = std::nullopt, bytesWritten = std::nullopt, rays = std::nullopt;
+
+  bool operator==(const PassWork&) const = default;
+};
+
+/// What one frame of the technique did. `texelReads` are from the instrumented build of the same shaders.
 struct WorkCounters {
-  std::optional<std::uint64_t> passesRun, passesSkipped, draws, primitives, fragments, texelReads, texelsWritten, rays;
+  std::optional<std::uint64_t> passesRun, passesSkipped, draws, primitives;
+  std::optional<std::uint64_t> fragments;   ///< samples that passed, of raster passes and full-screen ones
+  std::optional<std::uint64_t> texelReads;  ///< in texels: a bilinear tap or a gather is 4
+  std::optional<std::uint64_t> texelsWritten, bytesWritten, rays;
+  std::optional<std::map<std::string, std::uint64_t>> readsByFormat;  ///< texelReads, by the texture's format
+  std::optional<std::vector<PassWork>> passes;
 
   bool operator==(const WorkCounters&) const = default;
+};
+
+/// What the reference cost and how far it can be believed.
+struct ReferenceRecord {
+  std::optional<std::uint64_t> rays;       ///< traced for it, in whatever run made it
+  std::optional<std::uint64_t> raysSaved;  ///< that an adaptive reference left out of `samples` a pixel
+  std::optional<double> standardError;     ///< root mean square over the mask of the standard error of R
+  /// Root mean square over the mask of the difference between N.L V and the exact integral of N.w over the visible source,
+  /// both relative to a receiver that faces the light and sees all of it: what a picture shaded with the right V still gets
+  /// wrong.
+  std::optional<double> cosineFloor;
+
+  bool operator==(const ReferenceRecord&) const = default;
 };
 
 struct MachineRecord {
@@ -70,6 +103,9 @@ struct JobRecord {
   JobStatus status = JobStatus::ok;
   std::string reason;  ///< why not ok; "" is written as null
   std::optional<ErrorFigures> error;
+  std::optional<ErrorSplits> splits;
+  std::optional<FlipFigures> flip;
+  std::optional<ReferenceRecord> reference;
   std::optional<TimeRecord> time;
   WorkCounters work;
   std::optional<std::uint64_t> memoryBytes;

@@ -56,9 +56,25 @@ JobRecord fullRecord() {
                              .ratio = 7.0,
                              .ratioCi95 = Interval{8.0, 9.0},
                              .pairs = {}};
-  time.passes = {{"depth", 1.25}, {"filter", std::nullopt}};
+  time.passes = {{"depth", 1.25, 1.5}, {"filter", std::nullopt, std::nullopt}};
+  time.passSumMs = 1.25;
+  time.gapMs = 0.25;
+  time.repeats = 3;
   record.time = time;
-  record.work = {1, 2, 3, 4, 5, 6, 7, std::uint64_t{1} << 40};
+  record.splits = ErrorSplits{.acne = 0.1, .leak = 0.2, .detachment = 0.3, .penumbra = 0.4, .shimmer = 0.5};
+  record.flip = FlipFigures{.mean = 0.6, .p99 = 0.7};
+  record.reference = ReferenceRecord{.rays = 10, .raysSaved = 5, .standardError = 0.01, .cosineFloor = 0.02};
+  record.work = {.passesRun = 1,
+                 .passesSkipped = 2,
+                 .draws = 3,
+                 .primitives = 4,
+                 .fragments = 5,
+                 .texelReads = 6,
+                 .texelsWritten = 7,
+                 .bytesWritten = 8,
+                 .rays = std::uint64_t{1} << 40,
+                 .readsByFormat = std::map<std::string, std::uint64_t>{{"R32F", 6}},
+                 .passes = std::vector<PassWork>{{"depth", 4, 5, 6, 7, 8, 9}}};
   record.memoryBytes = std::uint64_t{5} << 30;
   record.plan = {{"penumbra", true, "wide", 3.5}, {"motion", false, "nothing moves", std::nullopt}};
   record.machine = {"llvmpipe", "a processor"};
@@ -84,18 +100,25 @@ TEST(Results, ARecordIsOneLine) {
 
 TEST(Results, KeysAreThoseOfTheFormat) {
   const json line = json::parse(toJsonLine(fullRecord()));
-  EXPECT_EQ(keysOf(line), (std::set<std::string>{"job", "config", "scene", "light", "technique", "parameters", "status",
-                                                 "reason", "error", "time", "work", "memory_bytes", "plan", "machine"}));
+  EXPECT_EQ(keysOf(line),
+            (std::set<std::string>{"job", "config", "scene", "light", "technique", "parameters", "status", "reason", "error",
+                                   "splits", "flip", "reference", "time", "work", "memory_bytes", "plan", "machine"}));
+  EXPECT_EQ(keysOf(line["splits"]), (std::set<std::string>{"acne", "leak", "detachment", "penumbra", "shimmer"}));
+  EXPECT_EQ(keysOf(line["flip"]), (std::set<std::string>{"mean", "p99"}));
+  EXPECT_EQ(keysOf(line["reference"]), (std::set<std::string>{"rays", "rays_saved", "standard_error", "cosine_floor"}));
   EXPECT_EQ(keysOf(line["error"]), (std::set<std::string>{"mse", "mse_se", "rmse", "rmse_se", "rmse_band", "mae", "bias", "p99",
                                                           "max", "over_0_1", "non_finite", "noise_floor", "classes"}));
   EXPECT_EQ(keysOf(line["error"]["classes"]), (std::set<std::string>{"lit", "umbra", "penumbra", "band", "terminator"}));
   EXPECT_EQ(keysOf(line["error"]["classes"]["lit"]), (std::set<std::string>{"share", "rmse", "bias"}));
-  EXPECT_EQ(keysOf(line["time"]), (std::set<std::string>{"timer", "regimes", "passes"}));
+  EXPECT_EQ(keysOf(line["time"]), (std::set<std::string>{"timer", "regimes", "passes", "pass_sum_ms", "gap_ms", "repeats"}));
   EXPECT_EQ(keysOf(line["time"]["regimes"]["dynamic"]),
             (std::set<std::string>{"median_ms", "wall_median_ms", "mad_ms", "ci95_ms", "p95_ms", "n", "ratio", "ratio_ci95"}));
-  EXPECT_EQ(keysOf(line["time"]["passes"][0]), (std::set<std::string>{"name", "ms"}));
-  EXPECT_EQ(keysOf(line["work"]), (std::set<std::string>{"passes_run", "passes_skipped", "draws", "primitives", "fragments",
-                                                         "texel_reads", "texels_written", "rays"}));
+  EXPECT_EQ(keysOf(line["time"]["passes"][0]), (std::set<std::string>{"name", "ms", "wall_ms"}));
+  EXPECT_EQ(keysOf(line["work"]),
+            (std::set<std::string>{"passes_run", "passes_skipped", "draws", "primitives", "fragments", "texel_reads",
+                                   "texels_written", "bytes_written", "rays", "reads_by_format", "passes"}));
+  EXPECT_EQ(keysOf(line["work"]["passes"][0]), (std::set<std::string>{"name", "primitives", "fragments", "texel_reads",
+                                                                      "texels_written", "bytes_written", "rays"}));
   EXPECT_EQ(keysOf(line["plan"][0]), (std::set<std::string>{"effect", "on", "reason", "value"}));
   EXPECT_EQ(keysOf(line["machine"]), (std::set<std::string>{"renderer", "cpu"}));
 }

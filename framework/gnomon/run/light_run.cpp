@@ -1,50 +1,20 @@
 #include "gnomon/run/light_run.h"
 
-#include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <glm/gtc/constants.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "gnomon/base/clock.h"
 #include "gnomon/base/files.h"
-#include "gnomon/base/statistics.h"
 #include "gnomon/measure/error.h"
+#include "gnomon/run/job_time.h"
 #include "gnomon/run/pictures.h"
-#include "gnomon/run/reference.h"
-#include "gnomon/session.h"
 
 namespace gnomon {
 
 namespace {
-
-constexpr double kTurnDegrees = 0.5;
-constexpr int kPassTimingFrames = 3;
-
-int posesOf(const MeasureChoice& measure) {
-  return std::max(1, measure.frames / (2 * measure.blocks));
-}
-
-std::vector<Light> posesOf(const Light& light, int poses) {
-  std::vector<Light> all;
-  for (int p = 1; p < poses; ++p) all.push_back(lightAtPose(light, p, poses));
-  return all;
-}
-
-std::string processorName() {
-  std::ifstream file("/proc/cpuinfo");
-  std::string line;
-  while (std::getline(file, line)) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
-}
 
 std::vector<PlanEntry> planEntries(const EffectPlan& plan) {
   std::vector<PlanEntry> entries;
@@ -52,12 +22,6 @@ std::vector<PlanEntry> planEntries(const EffectPlan& plan) {
     entries.push_back({d.name, d.on, d.reason, std::isfinite(d.value) ? std::optional<double>(d.value) : std::nullopt});
   }
   return entries;
-}
-
-SessionSetup sessionSetup(const ResolvedRun& run, std::size_t light) {
-  return {run.scene,       run.lights[light],
-          run.camera,      run.config.output.size,
-          run.config.plan, posesOf(run.lights[light], 2 * posesOf(run.config.measure))};
 }
 
 /// Rounding may carry V this far out of [0,1]: two units in the last place of a half float at 1.
@@ -76,162 +40,8 @@ std::string impossibleValues(const Image& visibility) {
 
 }  // namespace
 
-Light lightAtPose(const Light& light, int pose, int poses) {
-  const double phase = 2.0 * glm::pi<double>() * pose / poses;
-  // A circle through the nominal pose: never farther from it than its diameter.
-  const double yaw = 0.5 * kTurnDegrees * std::sin(phase);
-  const double pitch = 0.5 * kTurnDegrees * (1.0 - std::cos(phase));
-  const LightFrame axes = lightFrame(light);
-  const glm::dquat turn = glm::angleAxis(glm::radians(yaw), axes.y) * glm::angleAxis(glm::radians(pitch), axes.x);
-  Light turned = light;
-  turned.position = light.target + turn * (light.position - light.target);
-  return turned;
-}
-
-struct LightRun::State {
-  const ResolvedRun& run;
-  std::size_t light;
-  Registry& registry;
-  LightRunOptions options;
-  Session session;
-  RenderedReference reference;
-  ReceiverImages receivers;
-  Image classes;
-  MachineRecord machine;
-  gl::QueryObject gpuTimer;  ///< only where the GPU's timer is believed
-
-  State(const ResolvedRun& r, std::size_t l, Registry& g, LightRunOptions o)
-      : run(r),
-        light(l),
-        registry(g),
-        options(std::move(o)),
-        session(sessionSetup(r, l)),
-        reference(tracedReference()),
-        machine{gl::currentContextInfo().renderer, processorName()} {
-    session.runShared();
-    receivers = receiverImages(session);
-    classes = classesOf(session, receivers, reference.halves);
-    if (options.clock == Clock::gpu) gpuTimer = gl::makeQuery(GL_TIME_ELAPSED);
-  }
-
-  /// Does the work inside a slice of the trace.
-  template <class Work>
-  auto traced(const std::string& name, const Work& work) const {
-    const TraceSlice slice(options.trace, name);
-    return work();
-  }
-
-  /// A technique whose defences are off is judged by a reference that has its own.
-  RenderedReference soundReference() {
-    const ReferenceRequest request{run.reference, options.referenceCache};
-    if (run.config.plan.without.empty()) return renderReference(session, registry, request);
-    SessionSetup setup = sessionSetup(run, light);
-    setup.overrides.without.clear();
-    Session sound(std::move(setup));
-    return renderReference(sound, registry, request);
-  }
-
-  RenderedReference tracedReference() {
-    TraceSlice slice(options.trace, "reference");
-    RenderedReference rendered = soundReference();
-    slice.note("technique", run.reference.name());
-    slice.note("from", rendered.fromCache ? "cache" : fmt::format("{} rays", rendered.rays));
-    return rendered;
-  }
-
-  const Light& nominal() const { return run.lights[light]; }
-  GraphRun graphRun() const { return {.checkFinite = options.checkFinite}; }
-
-  /// Moves the light and times the technique's own passes, finished before and after.
-  FrameTime timedFrame(Slot slot, const Light& pose) {
-    session.moveLight(pose);
-    return timedFrame(slot);
-  }
-  FrameTime timedFrame(Slot slot) {
-    session.runShared();
-    glFinish();
-    const double cpu = processCpuMs();
-    const double wall = wallMs();
-    if (gpuTimer) glBeginQuery(GL_TIME_ELAPSED, gpuTimer.name());
-    session.runTechnique(slot);
-    if (gpuTimer) glEndQuery(GL_TIME_ELAPSED);
-    glFinish();
-    FrameTime time{processCpuMs() - cpu, wallMs() - wall};
-    if (gpuTimer) {
-      GLuint64 nanoseconds = 0;
-      glGetQueryObjectui64v(gpuTimer.name(), GL_QUERY_RESULT, &nanoseconds);
-      time.gpuMs = static_cast<double>(nanoseconds) * 1e-6;
-    }
-    return time;
-  }
-
-  CpuPasses cpuPassesOf(Slot slot) const { return session.hasCpuPasses(slot) ? CpuPasses::some : CpuPasses::none; }
-
-  TimeRecord time(Slot candidate, Slot baseline) {
-    TimeRecord record;
-    const Clock clock = clockForPair(*options.clock, cpuPassesOf(candidate), cpuPassesOf(baseline));
-    record.timer = clock;
-    const int poses = posesOf(run.config.measure);
-    const TimingPlan plan{.poses = poses, .blocks = run.config.measure.blocks, .clock = clock};
-    for (const std::string& regime : run.config.measure.regimes) {
-      const bool moving = regime == "dynamic";
-      const TraceSlice slice(options.trace, "time: " + regime, {{"clock", clockName(clock)}});
-      session.moveLight(nominal());
-      PoseSteps steps(poses);
-      TimingFigures figures = measurePaired(
-          [&](Side side, int pose) {
-            const Slot slot = side == Side::candidate ? candidate : baseline;
-            return moving ? timedFrame(slot, lightAtPose(nominal(), steps.next(side, pose), steps.count())) : timedFrame(slot);
-          },
-          plan);
-      if (!moving) {  // nothing runs: what a ratio of two nothings says is noise
-        figures.ratio.reset();
-        figures.ratioCi95.reset();
-      }
-      record.regimes[regime] = std::move(figures);
-    }
-    record.passes = passTimes(candidate, poses);
-    session.moveLight(nominal());
-    return record;
-  }
-
-  std::vector<PassTime> passTimes(Slot slot, int poses) {
-    const TraceSlice slice(options.trace, "passes", {{"finish", "after each pass: their sum exceeds a timed frame"}});
-    std::vector<std::string> names;
-    std::vector<std::vector<double>> times;
-    const int positions = std::max(poses, 2);
-    session.moveLight(nominal());
-    session.runShared();
-    session.runTechnique(slot);
-    for (int i = 0; i < kPassTimingFrames; ++i) {  // never where the frame before stood: nothing would run
-      session.moveLight(lightAtPose(nominal(), (i + 1) % positions, positions));
-      session.runShared();
-      glFinish();
-      const double start = wallMs();
-      const GraphReport report = session.runTechnique(slot, {.timePasses = true});
-      traceFrame(start, wallMs() - start, report);
-      times.resize(report.passes.size());
-      names.resize(report.passes.size());
-      for (std::size_t p = 0; p < report.passes.size(); ++p) {
-        names[p] = report.passes[p].name;
-        times[p].push_back(options.clock == Clock::cpu ? report.passes[p].cpuMs : report.passes[p].wallMs);
-      }
-    }
-    std::vector<PassTime> passes;
-    for (std::size_t p = 0; p < names.size(); ++p) passes.push_back({names[p], median(times[p])});
-    return passes;
-  }
-
-  /// Passes ran one after the other, each to its finish: each begins where the one before it ended.
-  void traceFrame(double startMs, double durationMs, const GraphReport& report) const {
-    if (options.trace == nullptr) return;
-    options.trace->add("frame", startMs, durationMs);
-    for (const PassReport& pass : report.passes) {
-      if (!pass.ran) continue;
-      options.trace->add(pass.name, startMs, pass.wallMs, {{"cpu_ms", fmt::format("{:.4f}", pass.cpuMs)}});
-      startMs += pass.wallMs;
-    }
-  }
+struct LightRun::State : LightStage {
+  using LightStage::LightStage;
 
   void measure(JobRecord& record, const ResolvedTechnique& technique) {
     session.removeSlots();
@@ -268,7 +78,7 @@ struct LightRun::State {
     if (options.clock) {
       const Slot baseline =
           traced("baseline's set-up", [&] { return session.addSlot(run.baseline.technique, run.baseline.parameters); });
-      if (session.support(baseline).ok()) record.time = time(slot, baseline);
+      if (session.support(baseline).ok()) record.time = measureTime(*this, slot, baseline);
     }
   }
 };

@@ -1,0 +1,70 @@
+#include "gnomon/run/light_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace gnomon {
+
+namespace {
+
+std::vector<Light> posesOf(const Light& light, int poses) {
+  std::vector<Light> all;
+  for (int p = 1; p < poses; ++p) all.push_back(lightAtPose(light, p, poses));
+  return all;
+}
+
+std::string processorName() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+SessionSetup sessionSetup(const ResolvedRun& run, std::size_t light) {
+  return {run.scene,       run.lights[light],
+          run.camera,      run.config.output.size,
+          run.config.plan, posesOf(run.lights[light], 2 * posesOf(run.config.measure))};
+}
+
+}  // namespace
+
+int posesOf(const MeasureChoice& measure) {
+  return std::max(1, measure.frames / (2 * measure.blocks));
+}
+
+LightStage::LightStage(const ResolvedRun& r, std::size_t l, Registry& g, LightRunOptions o)
+    : run(r),
+      light(l),
+      registry(g),
+      options(std::move(o)),
+      session(sessionSetup(r, l)),
+      reference(tracedReference()),
+      machine{gl::currentContextInfo().renderer, processorName()} {
+  session.runShared();
+  receivers = receiverImages(session);
+  classes = classesOf(session, receivers, reference.halves);
+}
+
+/// A technique whose defences are off is judged by a reference that has its own.
+RenderedReference LightStage::soundReference() {
+  const ReferenceRequest request{run.reference, options.referenceCache};
+  if (run.config.plan.without.empty()) return renderReference(session, registry, request);
+  SessionSetup setup = sessionSetup(run, light);
+  setup.overrides.without.clear();
+  Session sound(std::move(setup));
+  return renderReference(sound, registry, request);
+}
+
+RenderedReference LightStage::tracedReference() {
+  TraceSlice slice(options.trace, "reference");
+  RenderedReference rendered = soundReference();
+  slice.note("technique", run.reference.name());
+  slice.note("from", rendered.fromCache ? "cache" : fmt::format("{} rays", rendered.rays));
+  return rendered;
+}
+
+}  // namespace gnomon

@@ -1,0 +1,44 @@
+// What the jobs of one light share: a session, a reference, what pixels are judged by. Internal to run/.
+#pragma once
+
+#include <string>
+
+#include "gnomon/run/light_run.h"
+#include "gnomon/run/reference.h"
+#include "gnomon/session.h"
+
+namespace gnomon {
+
+struct LightStage {
+  const ResolvedRun& run;
+  std::size_t light;
+  Registry& registry;
+  LightRunOptions options;
+  Session session;
+  RenderedReference reference;
+  ReceiverImages receivers;
+  Image classes;
+  MachineRecord machine;
+
+  /// Renders or loads the reference. Throws Error.
+  LightStage(const ResolvedRun& r, std::size_t l, Registry& g, LightRunOptions o);
+
+  const Light& nominal() const { return run.lights[light]; }
+  GraphRun graphRun() const { return {.checkFinite = options.checkFinite}; }
+
+  /// Does the work inside a slice of the trace.
+  template <class Work>
+  auto traced(const std::string& name, const Work& work) const {
+    const TraceSlice slice(options.trace, name);
+    return work();
+  }
+
+ private:
+  RenderedReference soundReference();
+  RenderedReference tracedReference();
+};
+
+/// How many poses a regime's path has.
+int posesOf(const MeasureChoice& measure);
+
+}  // namespace gnomon
