@@ -3,8 +3,10 @@
 // The step [d <= z] is approximated by exp(c (z - d)), clamped to 1: the blocker's part, exp(c z), may be averaged by any
 // filter before the receiver's depth is known. exp(c z) leaves a float's range at c z > 88, so a texel stores c z itself, and
 // means are taken in the log domain: ln(a e^x + b e^y) = m + ln(a e^(x-m) + b e^(y-m)) with m the larger of the two, which no c
-// overflows. Valid where no texel under the kernel is farther than the receiver; elsewhere light leaks near contacts, the more
-// the smaller c. V^k darkens what the filter made too light.
+// overflows. Valid where no texel under the kernel is farther than the receiver: one that is weighs more than 1, and drowns the
+// blockers beside it. So the largest c z of a kernel is kept too; where it exceeds c d the lookup compares depths instead
+// (Annen et al. 2008 fall back likewise), and taps that are filtered for one receiver are limited to c d. Light
+// leaks near contacts, the more the smaller c. V^k darkens what the filter made too light.
 #include <gnomon/plugin.h>
 
 namespace gnomon {
@@ -27,7 +29,7 @@ class Esm final : public Representation {
   explicit Esm(const Parameters& /*uniform, all of them*/) {}
 
   StoredMap store(GraphBuilder& graph, const ProjectedMap& map) override {
-    constexpr Format kFormat = Format::r32f;
+    constexpr Format kFormat = Format::rg32f;
     return {graph.fullscreen("exponents", {.shader = "esm_exponents.frag", .format = kFormat, .size = map.size}), kFormat};
   }
 };
@@ -40,5 +42,6 @@ GNOMON_PLUGIN(gnomon::component<gnomon::Esm>(
     {.paper = "Annen, Mertens, Seidel, Flerackers, Kautz, Exponential shadow maps, GI 2008; Salvi, Rendering filtered shadows "
               "with exponential shadow maps, ShaderX6 2008",
      .summary = "the step as an exponential, averaged in the log domain",
-     .defences = {{"log_domain", "means of exponentials about the larger exponent, which no exponent overflows"}}},
+     .defences = {{"log_domain", "means of exponentials about the larger exponent, which no exponent overflows"},
+                  {"straddling_kernel", "kernels with texels beyond the receiver are compared, or limited to it"}}},
     {.shader = "esm.glsl"}))

@@ -50,6 +50,16 @@ TEST(Esm, TheLogDomainIsTheMeanOfExponentials) {
   EXPECT_NEAR(least->visibility, expected, 1e-4);
 }
 
+TEST(Esm, AKernelThatReachesBeyondTheReceiverIsCompared) {
+  // pillars' floor slopes as the light sees it: without the defence a wide kernel's farther half drowns every blocker.
+  SessionSetup setup = builtinSetup("pillars");
+  const std::string wide = R"({"width": 21})";
+  const Image filtered = renderVisibility(setup, "pcf", R"({"taps": 21})");
+  const double compared = meanDifference(renderVisibility(setup, "esm", wide), filtered);
+  setup.overrides.without = {"straddling_kernel"};
+  EXPECT_LT(compared, 0.2 * meanDifference(renderVisibility(setup, "esm", wide), filtered));
+}
+
 TEST(Esm, ASteepExponentialIsTheFilteredStep) {  // to what drivers make of exp and log, 18 of them one after another
   const auto row = edge(R"({"map_size": 512, "width": 9, "exponent": 500})");
   const double texel = 2.0 * std::tan(glm::radians(EdgeScene::kConeDegrees)) * dimensions::kSourceHeight / 512.0;

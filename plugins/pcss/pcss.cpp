@@ -7,7 +7,8 @@
 //    (d - b) w / (b d) of a metre at one metre: the width of the kernel in the map. Directional lights: (d - b) 2 tan(delta/2).
 // 3. Filter. Taps over that width, at least one texel, averaged as the representation wants it.
 // Exact for one blocker parallel to a planar receiver; several blockers at different distances are taken for one between them.
-// Where the scene calls for no penumbra nothing is searched and one texel is read.
+// The map's axes are the source's own, rolled as it is. Where the scene calls for no penumbra nothing is searched and one texel
+// is compared, whatever the representation.
 #include <gnomon/plugin.h>
 
 namespace gnomon {

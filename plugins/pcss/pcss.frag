@@ -14,12 +14,6 @@ vec2 imageOfSource(float receiver, float blocker) {
 vec2 tapAt(int x, int y, int n) { return (vec2(x, y) + 0.5) / float(n) - 0.5; }
 bool inSource(vec2 tap) { return mapSource.z == 0.0 || dot(tap, tap) <= 0.25; }
 
-vec2 turned(vec2 offset) {
-  const float c = cos(mapSource.w);
-  const float s = sin(mapSource.w);
-  return vec2(c * offset.x - s * offset.y, s * offset.x + c * offset.y);
-}
-
 // Mean distance of the texels nearer than the receiver; 0 where there are none.
 float blockerMetres(MapPoint p) {
   const vec2 width = min(imageOfSource(p.metres, mapDepth.z), widest * mapTexel.xy);
@@ -28,7 +22,7 @@ float blockerMetres(MapPoint p) {
   for (int y = 0; y < SEARCH_TAPS; ++y) {
     for (int x = 0; x < SEARCH_TAPS; ++x) {
       const vec2 tap = tapAt(x, y, SEARCH_TAPS);
-      const vec2 uv = p.uv + turned(tap * width);
+      const vec2 uv = p.uv + tap * width;
       if (!inSource(tap) || isLit(p, uv) == 1.0) continue;
       const vec2 centre = (floor(uv * mapTexel.zw) + 0.5) * mapTexel.xy;
       sum += mapMetres(textureLod(depthMap, centre, 0.0).r);
@@ -41,9 +35,9 @@ float blockerMetres(MapPoint p) {
 void main() {
   MapPoint p = mapPoint();
   // No kernel yet. The search asks which texels are nearer: a bias that grew with its region would hide blockers.
-  setFilterRadius(p, 0.0);
+  setFilterRadius(p, vec2(0.0));
   if (!PENUMBRA) {
-    visibility = visibilityAt(p, p.uv);
+    visibility = isLit(p, p.uv);
     return;
   }
   const float blocker = blockerMetres(p);
@@ -52,14 +46,13 @@ void main() {
     return;
   }
   const vec2 width = clamp(imageOfSource(p.metres, blocker), mapTexel.xy, widest * mapTexel.xy);
-  const vec2 texels = width * mapTexel.zw;
-  setFilterRadius(p, 0.5 * max(texels.x, texels.y));
+  setFilterRadius(p, 0.5 * width * mapTexel.zw);
   Filtered f = noTaps();
   int taps = 0;
   for (int y = 0; y < TAPS; ++y) {
     for (int x = 0; x < TAPS; ++x) {
       const vec2 tap = tapAt(x, y, TAPS);
-      if (inSource(tap)) addTap(f, p, p.uv + turned(tap * width), taps++);
+      if (inSource(tap)) addTap(f, p, p.uv + tap * width, taps++);
     }
   }
   visibility = filteredVisibility(f, p, taps);

@@ -71,6 +71,89 @@ TEST(Pcss, WithoutExtentItIsTheHardShadowOfItsBiases) {
   for (std::size_t i = 0; i < soft.size(); ++i) ASSERT_EQ(soft[i].visibility, hard[i].visibility) << soft[i].at;
 }
 
+TEST(Pcss, ForEveryRepresentationItIsTheSameHardShadowWithoutExtent) {
+  const auto over = [](const std::string& technique) { return rowAt(1.0, technique, R"({"map_size": 512})", 0.0); };
+  const auto hard = rowAt(1.0, "shadow_map", R"({"map_size": 512, "bias.slope": 0, "bias.receiver_plane": true})", 0.0);
+  for (const char* technique : {"pcss_vsm", "pcss_esm"}) {
+    const auto row = over(technique);
+    for (std::size_t i = 0; i < row.size(); ++i) ASSERT_EQ(row[i].visibility, hard[i].visibility) << technique << " " << i;
+  }
+}
+
+TEST(Pcss, ASourceRolledByAQuarterIsThatOfTheOtherProportions) {
+  const auto under = [](glm::dvec2 size, double roll) {
+    SessionSetup setup = builtinSetup("pillars");
+    setup.light.source = {.shape = SourceShape::rectangle, .size = size, .rollDegrees = roll};
+    return renderVisibility(setup, "pcss");
+  };
+  const Image upright = under({0.2, 2.0}, 0.0);
+  EXPECT_LT(meanDifference(under({2.0, 0.2}, 90.0), upright), 0.1 * meanDifference(under({2.0, 0.2}, 0.0), upright));
+}
+
+TEST(Pcss, UnderADirectionalLightThePenumbraIsThatOfItsDisc) {
+  // Of a disc the middle half of V lies within 0.404 radii of its centre (A.2), each radius h tan(delta/2) on the floor (A.7).
+  constexpr double kDegrees = 8.0;
+  const double radius = 1.0 * std::tan(glm::radians(kDegrees / 2.0));
+  SessionSetup setup = builtinSetup("half_plane", {1024, 4}, R"({"blocker_height": 1})");
+  setup.scene.instances.at(0).world = glm::scale(glm::dmat4(1.0), {4.0, 1.0, 4.0});
+  setup.light = {};
+  setup.light.type = LightType::directional;
+  setup.light.position = {0.0, kWide, 0.0};
+  setup.light.angularDiameterDegrees = kDegrees;
+  setup.camera.type = CameraType::orthographic;
+  setup.camera.target = {0.1, 0.0, 0.0};
+  setup.camera.position = {0.1, 0.9, 0.0};
+  setup.camera.up = {0.0, 0.0, -1.0};
+  setup.camera.height = 0.5 * 4.0 / 1024.0;
+  ensureContext();
+  Session session(std::move(setup));
+  const Slot slot = addSlot(session, "pcss", kFine);
+  session.frame(slot);
+  // Straight above, the blocker hides its own half of the shadow from this camera: what is seen is the lit half.
+  const auto row = acrossEdge(session, slot, Across::x);
+  const auto three = std::find_if(row.begin(), row.end(), [](const EdgePixel& p) { return p.visibility > 0.75; });
+  ASSERT_NE(three, row.end());
+  EXPECT_NEAR(three->at, 0.404 * radius, 0.08 * radius);
+}
+
+TEST(Pcss, TapsWeighAlikeInEveryRepresentation) {  // of four taps a wrong mean would favour one
+  const SessionSetup setup = builtinSetup("pillars");
+  EXPECT_LT(meanDifference(renderVisibility(setup, "pcss_esm", R"({"exponent": 5000, "taps": 2})"),
+                           renderVisibility(setup, "pcss", R"({"taps": 2})")),
+            2e-3);
+}
+
+TEST(Pcss, ItsBiasGrowsWithItsKernel) {  // spheres curve towards the light within it
+  const auto darkening = [](const char* curvature) {
+    const SessionSetup setup = builtinSetup("sphere_grid");
+    const Image truth = renderVisibility(setup, "ray_traced", R"({"samples": 64})");
+    const Image v = renderVisibility(setup, "pcss", fmt::format(R"({{"bias.curvature": {}}})", curvature));
+    double sum = 0.0;
+    for (std::size_t i = 0; i < v.data.size(); ++i) sum += truth.data[i] == 1.0f ? 1.0 - v.data[i] : 0.0;
+    return sum;
+  };
+  EXPECT_LT(darkening("1"), 0.7 * darkening("0"));
+}
+
+TEST(Pcss, SeveralBlockersAreTakenForOne) {
+  ensureContext();
+  Session session(builtinSetup("pillars"));
+  EXPECT_EQ(session.support(addSlot(session, "pcss")).ignored, std::vector<Effect>{Effect::overlappingPenumbrae});
+}
+
+TEST(Pcss, AMapThatIsNotSquareGivesTheSamePenumbrae) {
+  const auto with = [](const char* size) {
+    return renderVisibility(builtinSetup("layers"), "pcss", fmt::format(R"({{"map_size": {}}})", size));
+  };
+  EXPECT_LT(meanDifference(with("[4096, 256]"), with("[256, 256]")), 5e-3);
+}
+
+TEST(Pcss, SteepExponentialsAreNoDarkerThanComparisons) {  // each tap is compared with the receiver's plane
+  const SessionSetup setup = builtinSetup("pillars");
+  EXPECT_LT(meanDifference(renderVisibility(setup, "pcss_esm", R"({"exponent": 1000})"), renderVisibility(setup, "pcss")),
+            5e-3);
+}
+
 TEST(Pcss, EveryRepresentationFindsThePenumbra) {
   // Variance is exact for one blocker over one receiver; exponentials fall short of a linear ramp by their steepness.
   const double expected = kSource * 1.0 / (kWide - 1.0);

@@ -1,8 +1,9 @@
 // Footprint `prefiltered`: the map is filtered once, before any receiver looks it up.
 //
 // Two one-dimensional passes average what texels store, in the representation's own domain, with a box or a Gaussian of any
-// width; a lookup reads four texels. The cost is the map's, not the picture's: 2 N texel reads for each of its texels, and
-// nothing while neither light nor casters move. The penumbra has one width everywhere.
+// width; a lookup reads four texels, and compares where the representation says that their mean is no evidence. The cost is the
+// map's, not the picture's: 2 N texel reads for each of its texels, and nothing while neither light nor casters move. The
+// penumbra has one width everywhere.
 #include <gnomon/plugin.h>
 
 namespace gnomon {

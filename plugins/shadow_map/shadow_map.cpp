@@ -17,7 +17,8 @@ class Single final : public Projection {
     return depthMapSupport(survey, light, frame, p_);
   }
   ProjectedMap project(GraphBuilder& graph, const Frame& frame, const EffectPlan& plan, const MapReach& reach) override {
-    return {lightDepth(graph, frame, p_, plan, reach).map, p_.size};
+    const LightDepth depth = lightDepth(graph, frame, p_, plan, reach);
+    return {depth.map, p_.size, depth.averaged};
   }
 
  private:

@@ -43,7 +43,9 @@ class Vsm final : public Representation {
 }  // namespace
 }  // namespace gnomon
 
-GNOMON_PLUGIN(gnomon::component<gnomon::Vsm>("vsm", gnomon::parameterTable(),
-                                             {.paper = "Donnelly, Lauritzen, Variance shadow maps, I3D 2006",
-                                              .summary = "two moments of depth, and Chebyshev's bound"},
-                                             {.shader = "vsm.glsl"}))
+GNOMON_PLUGIN(gnomon::component<gnomon::Vsm>(
+    "vsm", gnomon::parameterTable(),
+    {.paper = "Donnelly, Lauritzen, Variance shadow maps, I3D 2006",
+     .summary = "two moments of depth, and Chebyshev's bound",
+     .defences = {{"min_variance", "a least variance: what cancellation leaves of it may be 0 or negative"}}},
+    {.shader = "vsm.glsl"}))

@@ -1,4 +1,5 @@
 // Representation `vsm`: moments of t, the range of depth less 1/2.
+#include "gnomon/defence.glsl"
 #include "parameters"
 
 #define Stored vec2
@@ -11,7 +12,8 @@ float visibilityOf(Stored moments, MapPoint p) {
   const float t = unbiasedRange(p) - 0.5;
   if (t <= moments.x) return 1.0;
   // The difference cancels: what is left of it may be rounding, and negative.
-  const float variance = max(moments.y - moments.x * moments.x, min_variance);
+  float variance = moments.y - moments.x * moments.x;
+  if (GNOMON_DEFENCE(min_variance)) variance = max(variance, min_variance);
   const float beyond = t - moments.x;
   const float bound = variance / (variance + beyond * beyond);
   return clamp((bound - bleeding_reduction) / (1.0 - bleeding_reduction), 0.0, 1.0);

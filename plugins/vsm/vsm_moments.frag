@@ -4,7 +4,7 @@
 out vec4 moments;
 
 float rangeAt(ivec2 texel) {
-  return mapRange(mapMetres(texelFetch(depthMap, clamp(texel, ivec2(0), textureSize(depthMap, 0) - 1), 0).r)) - 0.5;
+  return mapRange(mapMetres(texelFetch(averagedMap, clamp(texel, ivec2(0), textureSize(averagedMap, 0) - 1), 0).r)) - 0.5;
 }
 
 // Of the texel's own surface. Across an edge depth jumps, and only the difference on the near side is a slope.

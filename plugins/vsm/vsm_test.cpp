@@ -57,6 +57,22 @@ TEST(Vsm, APlaneShadesItselfNowhere) {
   }
 }
 
+TEST(Vsm, TheSlopeOfATexelIsVarianceToo) {  // without bias and least variance nothing else keeps a sloped plane lit
+  const SessionSetup plane = lonePlane(Glancing::spot, 20.0);
+  const Image v = renderVisibility(
+      plane, "vsm",
+      R"({"width": 1, "min_variance": 1e-12, "bleeding_reduction": 0, "bias.constant": 0, "bias.slope": 0, "map_size": 256})");
+  EXPECT_GT(*std::min_element(v.data.begin(), v.data.end()), 0.3f);
+}
+
+TEST(Vsm, TheLookupsTexelsBelongToTheReach) {
+  ensureContext();
+  Session session(builtinSetup("pillars"));
+  const Slot slot = addSlot(session, "vsm", R"({"width": 9})");
+  session.frame(slot);
+  EXPECT_EQ(session.facts(slot).filterRadiusTexels, 5.0);  // four beside the middle, and the bilinear lookup's one
+}
+
 TEST(Vsm, HalfFloatsLoseDigitsThatMomentsNeed) {
   const auto exact = edge("vsm", R"({"map_size": 512, "min_variance": 1e-9})");
   const auto half = edge("vsm", R"({"map_size": 512, "min_variance": 1e-9, "moments": "rg16f"})");
@@ -65,6 +81,42 @@ TEST(Vsm, HalfFloatsLoseDigitsThatMomentsNeed) {
     largest = std::max(largest, std::abs(exact[i].visibility - half[i].visibility));
   EXPECT_GT(largest, 1e-4);
   EXPECT_LT(largest, 0.2);
+}
+
+/// sphere_grid's visibility; its floor receives. Near and far, and with them the least variance, are those of the whole scene.
+Image overFloor(bool casts, Toggle idleReceivers) {
+  SessionSetup setup = builtinSetup("sphere_grid");
+  setup.scene.instances.at(0).casts = casts;
+  setup.overrides[Rule::idleReceivers] = idleReceivers;
+  setup.overrides[Rule::fitting] = Toggle::off;
+  return renderVisibility(setup, "vsm");
+}
+
+TEST(Vsm, AFloorThatCastsNothingIsInTheMapAllTheSame) {
+  const Image casting = overFloor(true, Toggle::automatic);
+  EXPECT_GT(meanDifference(overFloor(false, Toggle::off), casting), 1e-3);
+  EXPECT_LT(meanDifference(overFloor(false, Toggle::automatic), casting), 1e-5);
+}
+
+TEST(Vsm, AnIdleReceiverShadesNoOther) {  // bars over a floor that reaches beyond them, none of which casts
+  SessionSetup setup = builtinSetup("pillars");
+  setup.scene.instances.at(0).world = glm::scale(setup.scene.instances.at(0).world, glm::dvec3(3.0, 1.0, 3.0));
+  for (Instance& instance : setup.scene.instances) instance.casts = false;
+  const Image v = renderVisibility(setup, "vsm");
+  EXPECT_GT(*std::min_element(v.data.begin(), v.data.end()), 0.99f);
+}
+
+TEST(Vsm, WithoutALeastVarianceAPlaneShadesItself) {  // in half floats M2 - M1^2 cancels to less than 0
+  SessionSetup plane = lonePlane(Glancing::spot, 60.0);
+  const std::string half =
+      R"({"moments": "rg16f", "min_variance": 1e-3, "bleeding_reduction": 0, "bias.constant": 0, "bias.slope": 0})";
+  const auto darkest = [&] {
+    const Image v = renderVisibility(plane, "vsm", half);
+    return *std::min_element(v.data.begin(), v.data.end());
+  };
+  EXPECT_GT(darkest(), 0.9f);
+  plane.overrides.without = {"min_variance"};
+  EXPECT_LT(darkest(), 0.86f);
 }
 
 TEST(Vsm, TheGaussianIsNarrowerThanTheBoxOfItsWidth) {

@@ -126,6 +126,13 @@ inline double shadowedShare(SessionSetup setup, const std::string& technique, co
   return shadowedShare(session, slot);
 }
 
+/// Mean |a - b|.
+inline double meanDifference(const Image& a, const Image& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.data.size(); ++i) sum += std::abs(static_cast<double>(a.data[i]) - b.data[i]);
+  return sum / static_cast<double>(a.data.size());
+}
+
 /// The mean V where the source is wholly hidden, by 256 rays a pixel.
 inline double leakInUmbra(const SessionSetup& setup, const std::string& technique, const std::string& parameters) {
   const Image truth = renderVisibility(setup, "ray_traced", R"({"samples": 256})");

@@ -195,6 +195,31 @@ TEST_F(OnDepth, StencilCountsWhatFailsInDepth) {  // as a shadow volume does
   EXPECT_THAT(row(out), ElementsAre(1, 5, 1, 1, 1, 1, 1, 1));  // 7 and two rectangles in column 1
 }
 
+TEST_F(OnDepth, StencilIsComparedUnderItsReadMask) {
+  RasterPass pass = rectangles(target(), "9.0");
+  pass.depth = builder.texture("own", {{8, 4}, Format::d32f_s8});
+  pass.depthFrom = depth;
+  pass.depthTest = Compare::always;
+  pass.stencil = Stencil{.counterClockwise = {.compare = Compare::equal}, .reference = 4, .readMask = 4};
+  EXPECT_THAT(rowOf(pass), ElementsAre(9, 9, 9, 9, 1, 1, 1, 1));  // 7 and 4 agree in that bit
+}
+
+TEST_F(OnDepth, StencilIsWrittenUnderItsWriteMask) {
+  RasterPass pass = rectangles(target(), "1.0");
+  const Texture own = builder.texture("own", {{8, 4}, Format::d32f_s8});
+  pass.depth = own;
+  pass.depthFrom = depth;
+  pass.depthTest = Compare::always;
+  pass.stencil = Stencil{.counterClockwise = {.pass = StencilOp::zero}, .writeMask = 2};
+  builder.raster("draw", pass);
+  const Texture out = builder.fullscreen("marked", {.shader = shaderWriting(builder, "5.0"),
+                                                    .clear = glm::vec4(1.0f),
+                                                    .stencil = StencilTest{.texture = own, .reference = 5}});
+  graph->compile(std::span(&out, 1));
+  bench.run(*graph);
+  EXPECT_THAT(row(out), ElementsAre(5, 5, 5, 5, 1, 1, 1, 1));  // 7 without its second bit
+}
+
 TEST_F(RasterState, AFullscreenPassBlendsIntoACopy) {
   const Texture first = builder.fullscreen("first", {.shader = shaderWriting(builder, "float(p.x)")});
   const Texture out =

@@ -30,7 +30,8 @@ struct User {
 
 class Sharing : public testing::Test {
  protected:
-  User user(float offset, const std::string& identity, Format format = Format::r32f, glm::vec4 clear = glm::vec4(0.0f)) {
+  User user(float offset, const std::string& identity, Format format = Format::r32f, glm::vec4 clear = glm::vec4(0.0f),
+            Blend blend = Blend::none) {
     User u;
     *u.identity = identity;
     u.graph =
@@ -45,9 +46,11 @@ class Sharing : public testing::Test {
                               context.writeBlock(number, std::array<float, 4>{value, 0, 0, 0});
                             },
                         .identity = [text = u.identity] { return *text; }});
-    u.map = builder.fullscreen(
-        "map",
-        {.shader = shaderWriting(builder, "x", kNumber), .buffers = {{"Number", u.number}}, .format = format, .clear = clear});
+    u.map = builder.fullscreen("map", {.shader = shaderWriting(builder, "x", kNumber),
+                                       .buffers = {{"Number", u.number}},
+                                       .format = format,
+                                       .clear = clear,
+                                       .blend = blend});
     u.out = builder.fullscreen("show", {.shader = shaderWriting(builder, "OFFSET + texelFetch(source, p, 0).r", kSource),
                                         .reads = {{"source", u.map}},
                                         .constants = {{"OFFSET", offset}}});
@@ -135,6 +138,13 @@ TEST_F(Sharing, AnotherFormatIsAnotherMap) {
 TEST_F(Sharing, AnotherStateIsAnotherMap) {
   const User a = user(10.0f, "fit");
   const User b = user(20.0f, "fit", Format::r32f, glm::vec4(1.0f));
+  frame(a);
+  EXPECT_THAT(frame(b), Contains("map"));
+}
+
+TEST_F(Sharing, AnotherBlendingIsAnotherMap) {
+  const User a = user(10.0f, "fit");
+  const User b = user(20.0f, "fit", Format::r32f, glm::vec4(0.0f), Blend::additive);
   frame(a);
   EXPECT_THAT(frame(b), Contains("map"));
 }

@@ -42,6 +42,11 @@ TEST(Describe, NamesThePaperInWhichItWasPublished) {
   EXPECT_THAT(pcf()["paper"].get<std::string>(), HasSubstr("SIGGRAPH 1987"));
 }
 
+TEST(Describe, NamesThePapersOfAllComponents) {
+  EXPECT_THAT(described("pcss_vsm")["paper"].get<std::string>(),
+              AllOf(HasSubstr("Williams"), HasSubstr("; Donnelly"), HasSubstr("; Fernando")));
+}
+
 TEST(Describe, TellsWhichLightsATechniqueTakes) {
   EXPECT_EQ(where(pcf()["lights"], "light", "spot with a rectangle")["takes"], true);
   const Json& point = where(pcf()["lights"], "light", "point");

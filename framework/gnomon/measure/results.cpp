@@ -178,6 +178,7 @@ void keys(Visitor& visit, JobRecord& record) {
   visit("work", record.work);
   visit("memory_bytes", record.memoryBytes);
   visit("plan", record.plan);
+  visit("without", record.without);
   visit("machine", record.machine);
 }
 

@@ -110,6 +110,7 @@ struct JobRecord {
   WorkCounters work;
   std::optional<std::uint64_t> memoryBytes;
   std::vector<PlanEntry> plan;
+  std::vector<std::string> without = {};  ///< names of the defences that were off
   MachineRecord machine;
 
   bool operator==(const JobRecord&) const = default;

@@ -77,6 +77,7 @@ JobRecord fullRecord() {
                  .passes = std::vector<PassWork>{{"depth", 4, 5, 6, 7, 8, 9}}};
   record.memoryBytes = std::uint64_t{5} << 30;
   record.plan = {{"penumbra", true, "wide", 3.5}, {"motion", false, "nothing moves", std::nullopt}};
+  record.without = {"clamp"};
   record.machine = {"llvmpipe", "a processor"};
   return record;
 }
@@ -100,9 +101,9 @@ TEST(Results, ARecordIsOneLine) {
 
 TEST(Results, KeysAreThoseOfTheFormat) {
   const json line = json::parse(toJsonLine(fullRecord()));
-  EXPECT_EQ(keysOf(line),
-            (std::set<std::string>{"job", "config", "scene", "light", "technique", "parameters", "status", "reason", "error",
-                                   "splits", "flip", "reference", "time", "work", "memory_bytes", "plan", "machine"}));
+  EXPECT_EQ(keysOf(line), (std::set<std::string>{"job", "config", "scene", "light", "technique", "parameters", "status",
+                                                 "reason", "error", "splits", "flip", "reference", "time", "work",
+                                                 "memory_bytes", "plan", "without", "machine"}));
   EXPECT_EQ(keysOf(line["splits"]), (std::set<std::string>{"acne", "leak", "detachment", "penumbra", "shimmer"}));
   EXPECT_EQ(keysOf(line["flip"]), (std::set<std::string>{"mean", "p99"}));
   EXPECT_EQ(keysOf(line["reference"]), (std::set<std::string>{"rays", "rays_saved", "standard_error", "cosine_floor"}));

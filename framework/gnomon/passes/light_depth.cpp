@@ -38,6 +38,9 @@ glm::dvec2 depthCoefficients(bool perspective, double near, double far) {
 
 constexpr double kNearestRatio = 1e-10;
 
+/// Stored depths are negated there, so that the farthest is the greatest; this is farther than all.
+constexpr float kNoIdleReceiver = -2.0f;
+
 struct FormatPrecision {
   Format format;
   double step;  ///< quantum: absolute, or relative for float
@@ -64,7 +67,7 @@ glm::vec4 sourceExtent(const Light& light) {
     return glm::vec4(glm::dvec4(width, width, 1.0, 0.0));
   }
   if (light.source.shape == SourceShape::rectangle)
-    return glm::vec4(glm::dvec4(light.source.size, 0.0, glm::radians(light.source.rollDegrees)));
+    return glm::vec4(glm::dvec4(light.source.size, 0.0, 0.0));  // the light's axes are rolled with it
   const double width = light.source.shape == SourceShape::disc ? 2.0 * light.source.radius : 0.0;
   return glm::vec4(glm::dvec4(width, width, 1.0, 0.0));
 }
@@ -73,7 +76,7 @@ glm::vec4 sourceExtent(const Light& light) {
 double widestPenumbraRadius(const Light& light, const MapPlane& plane, const MapFit& fit, glm::ivec2 mapSize) {
   const double distance = plane.perspective ? (fit.far - fit.near) / (fit.near * fit.far) : fit.far - fit.near;
   const glm::dvec2 extent = glm::dvec2(sourceExtent(light)) * std::max(distance, 0.0) / plane.halfExtent;
-  return 0.5 * glm::length(extent * 0.5 * glm::dvec2(mapSize));  // whatever way the source is rolled
+  return 0.5 * glm::length(extent * 0.5 * glm::dvec2(mapSize));
 }
 
 LightMapBlock lightMapBlock(const FrameInputs& frame, const MapPlane& plane, const MapFit& fit, glm::ivec2 mapSize,
@@ -169,6 +172,8 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapPar
 
   const Buffer lightMap = graph.buffer("LightMap", sizeof(LightMapBlock));
   const DrawList casters = graph.drawList("casters");
+  const bool averages = reach.averages && plan.has(Rule::idleReceivers);
+  const DrawList idle = averages ? graph.drawList("idle receivers") : DrawList{};
   const bool cull = plan.has(Rule::culling);
   const bool fit = plan.has(Rule::fitting);
   const auto scratch = std::make_shared<MapFit>();
@@ -176,7 +181,7 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapPar
             {.inputs = {Input::geometry, Input::light, Input::camera},
              .after = {frame.parameters},
              .buffers = {lightMap},
-             .draws = {casters},
+             .draws = averages ? std::vector<DrawList>{casters, idle} : std::vector<DrawList>{casters},
              .run =
                  [=, &bias = parameters.bias, radius = reach.radiusTexels, varies = reach.varies](CpuContext& context) {
                    const double filterRadiusTexels = radius();
@@ -189,6 +194,7 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapPar
                    fitMap(subject, plane, {.margin = margin, .cull = cull, .fit = fit, .nearRatio = nearRatio}, *scratch);
                    context.writeBlock(lightMap, lightMapBlock(inputs, plane, *scratch, mapSize, precision, filterRadiusTexels));
                    context.draw(casters, scratch->casters, plane.axes.origin);
+                   if (averages) context.draw(idle, scratch->idle, plane.axes.origin);
                    Facts& now = context.facts();
                    now.perspective = plane.perspective;
                    now.texel = 2.0 * plane.halfExtent / glm::dvec2(mapSize);
@@ -208,8 +214,9 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapPar
                  },
              .identity =
                  [=, &bias = parameters.bias, radius = reach.radiusTexels] {
-                   return fmt::format("fit {}x{} {} cull {} fit {} near {:a} radius {:a} normal {:a}", mapSize.x, mapSize.y,
-                                      static_cast<int>(precision.format), cull, fit, nearRatio, radius(), bias.normal);
+                   return fmt::format("fit {}x{} {} cull {} fit {} near {:a} radius {:a} normal {:a} idle {}", mapSize.x,
+                                      mapSize.y, static_cast<int>(precision.format), cull, fit, nearRatio, radius(),
+                                      bias.normal, averages);
                  }});
 
   const Texture map = graph.texture("depth map", {mapSize, precision.format});
@@ -222,7 +229,20 @@ LightDepth lightDepth(GraphBuilder& graph, const Frame& frame, const DepthMapPar
                                .buffers = {{"LightMap", lightMap}}});
   graph.provide("LightMap", lightMap);
   graph.provide("depthMap", map);
-  return {map};
+  if (!averages) return {map};
+  constexpr Format kStored = Format::r32f;
+  const Texture farthest = graph.texture("farthest idle receivers", {mapSize, kStored});
+  graph.raster("idle receivers", {.vertex = "gnomon/light_depth.vert",
+                                  .fragment = "gnomon/idle_depth.frag",
+                                  .draws = idle,
+                                  .colours = {farthest},
+                                  .clears = {glm::vec4(kNoIdleReceiver)},
+                                  .blend = Blend::max,
+                                  .buffers = {{"LightMap", lightMap}}});
+  return {map, graph.fullscreen("casters over idle receivers", {.shader = "gnomon/averaged_depth.frag",
+                                                                .reads = {{"casters", map}, {"farthest", farthest}},
+                                                                .format = kStored,
+                                                                .size = mapSize})};
 }
 
 }  // namespace gnomon

@@ -34,6 +34,10 @@ Support depthMapSupport(const SceneSurvey& survey, const Light& light, const Fra
 
 struct LightDepth {
   Texture map;  ///< reversed depth: 1 at near, 0 at far and where nothing is
+  /// For maps that are averaged (MapReach::averages) where the plan knows idle receivers: texels that no caster covers hold the
+  /// farthest of them. Nothing lit lies beyond it there, so it blocks nothing; without it such a texel would weigh as a surface
+  /// at far. None elsewhere: `map` serves.
+  Texture averaged = {};
 };
 
 /// Declares two passes: `fit` on the CPU (the light's matrices, near and far, which casters to draw) and `light depth`.

@@ -151,6 +151,7 @@ void fitMap(const MapSubject& subject, const MapPlane& plane, const MapFitting& 
   read.max = glm::min(read.max, whole);
 
   result.casters.assign(scene.instances.size(), 0);
+  result.idle.assign(scene.instances.size(), 0);
   double near = std::numeric_limits<double>::infinity();
   double sceneNear = std::numeric_limits<double>::infinity();
   double sceneFar = -std::numeric_limits<double>::infinity();
@@ -160,6 +161,7 @@ void fitMap(const MapSubject& subject, const MapPlane& plane, const MapFitting& 
     const Image2D image = imageOf(plane, box);
     sceneNear = std::min(sceneNear, image.nearest);
     sceneFar = std::max(sceneFar, image.farthest);
+    result.idle[i] = scene.instances[i].receives && !scene.instances[i].casts ? 1 : 0;
     if (!scene.instances[i].casts) continue;
     const bool reaches = image.nearest <= read.farthest && image.overlaps(read, how.margin);
     result.casters[i] = reaches || !how.cull ? 1 : 0;

@@ -38,6 +38,7 @@ struct MapFit {
   double near = 0.0;
   double far = 0.0;
   std::vector<std::uint8_t> casters;  ///< flag for each instance
+  std::vector<std::uint8_t> idle;     ///< the same of receivers that cast nothing: all of them
 };
 
 struct MapFitting {

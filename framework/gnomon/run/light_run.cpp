@@ -101,6 +101,7 @@ JobRecord LightRun::run(const ResolvedTechnique& technique) {
   record.technique = technique.name();
   record.parametersJson = technique.parametersJson().dump();
   record.plan = planEntries(s.session.plan());
+  record.without = s.run.config.plan.without;
   record.machine = s.machine;
   try {
     s.measure(record, technique);

@@ -172,6 +172,7 @@ SceneSurvey survey(const Scene& scene, const Light& light, const Camera& camera,
     result.triangles += triangles;
     if (instance.casts) result.casterTriangles += triangles;
     if (instance.receives) result.receiverTriangles += triangles;
+    if (instance.receives && !instance.casts) result.idleReceiverTriangles += triangles;
   }
   result.movingInstances = scene.animation.riders.size();
   result.sourceHasExtent = hasExtent(light);

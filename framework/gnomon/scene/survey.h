@@ -36,7 +36,8 @@ struct SceneSurvey {
   std::size_t triangles = 0;
   std::size_t casterTriangles = 0;
   std::size_t receiverTriangles = 0;
-  std::size_t movingInstances = 0;  ///< that ride on the scene's animation
+  std::size_t idleReceiverTriangles = 0;  ///< of receivers that cast nothing
+  std::size_t movingInstances = 0;        ///< that ride on the scene's animation
   bool sourceHasExtent = false;
   /// Receiver triangles with a corner in front of the spot's plane and a plane that faces the source's centre (on either side
   /// for double-sided materials), not wholly outside the view frustum nor, by their bounding spheres, outside the light's

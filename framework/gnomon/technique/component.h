@@ -7,6 +7,9 @@
 //                                 or  #define Stored TYPE,  Stored storedOf(vec4 texel),  vec4 texelOf(Stored),
 //                                     Stored combine(Stored a, Stored b, float share)  the mean in which b has that share,
 //                                     float visibilityOf(Stored, MapPoint)
+//                               and, where a mean may be no evidence for a receiver,  #define LIMITS,
+//                                     Stored limited(Stored, MapPoint, vec2 uv)  what one texel may say to it,
+//                                     bool isDoubtful(Stored, MapPoint)  whether a mean must not be believed
 //   #include "gnomon/filter.glsl" visibilityAt(p, uv), and means over taps: addTap(), filteredVisibility()
 #pragma once
 
@@ -32,6 +35,8 @@ struct MapReach {
   std::function<double()> radiusTexels = [] { return 0.0; };
   /// Stored depths are used as distances of blockers, so nothing may be clamped to near.
   bool distances = false;
+  /// Texels are averaged, and must hold receivers that cast nothing too: the composer asks.
+  bool averages = false;
   /// The radius follows the penumbra from pixel to pixel: at most radiusTexels, and never wider than the source's image through
   /// the nearest caster.
   bool varies = false;
@@ -45,6 +50,7 @@ struct MapReach {
 struct ProjectedMap {
   Texture depth;  ///< reversed: 1 at near, 0 at far and where nothing is
   glm::ivec2 size{0, 0};
+  Texture averaged = {};  ///< `depth`, and in texels without a caster what casts nothing; none: `depth` serves
 };
 
 /// What lookups read.
@@ -59,7 +65,7 @@ class Projection {
   virtual ~Projection() = default;
   /// Refuses lights and sizes that it cannot cover. Effects ignored are the footprint's to say.
   virtual Support support(const SceneSurvey& survey, const Light& light, const Frame& frame) const = 0;
-  /// Declares the passes that make the map, and provides `depthMap` to later shaders.
+  /// Declares the passes that make the map, and provides `depthMap` to later shaders, and `averagedMap` to those that store.
   virtual ProjectedMap project(GraphBuilder& graph, const Frame& frame, const EffectPlan& plan, const MapReach& reach) = 0;
 };
 

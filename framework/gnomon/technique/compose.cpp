@@ -76,7 +76,10 @@ class ComposedTechnique final : public Technique {
   Outputs setup(GraphBuilder& graph, const Frame& frame, const EffectPlan& plan) override {
     graph.include("projection", "#include \"" + projectionShader_ + "\"\n");
     graph.include("representation", "#include \"" + representationShader_ + "\"\n");
-    const ProjectedMap map = projection_->project(graph, frame, plan, footprint_->reach());
+    MapReach reach = footprint_->reach();
+    reach.averages = !compares_;
+    const ProjectedMap map = projection_->project(graph, frame, plan, reach);
+    graph.provide("averagedMap", map.averaged ? map.averaged : map.depth);
     graph.facts().comparesDepth = compares_;
     const StoredMap stored = compares_ ? StoredMap{} : representation_->store(graph, map);
     if (stored.texture) graph.provide("storedMap", stored.texture);

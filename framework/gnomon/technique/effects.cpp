@@ -113,6 +113,13 @@ Finding fitting(const SceneSurvey& survey) {
                       survey.nearestCasterDistance, survey.farthestReceiverDistance)};
 }
 
+Finding idleReceivers(const SceneSurvey& survey) {
+  const std::size_t idle = survey.idleReceiverTriangles;
+  return {idle > 0, static_cast<double>(idle),
+          idle == 0 ? "0 triangles receive without casting: a map of casters holds every receiver"
+                    : fmt::format("{} triangles receive and do not cast: averaged maps hold them where no caster is", idle)};
+}
+
 Finding motion(const SceneSurvey& survey) {
   return {survey.movingInstances > 0, static_cast<double>(survey.movingInstances),
           fmt::format("{} instances ride on an animation of the scene", survey.movingInstances)};
@@ -133,7 +140,8 @@ std::vector<Finding> findings(const SceneSurvey& survey, const Light& light, con
           receivers(survey),
           culling(survey),
           fitting(survey),
-          {true, 0.0, "a pass with 0 changed inputs is skipped"}};
+          {true, 0.0, "a pass with 0 changed inputs is skipped"},
+          idleReceivers(survey)};
 }
 
 }  // namespace
@@ -152,7 +160,8 @@ const std::vector<std::string>& planNames() {
                                                  "receivers",
                                                  "culling",
                                                  "fitting",
-                                                 "skipping"};
+                                                 "skipping",
+                                                 "idle_receivers"};
   return names;
 }
 

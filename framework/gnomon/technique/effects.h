@@ -32,14 +32,15 @@ enum class Effect : std::uint8_t {
 
 /// What the framework makes of the survey by itself, whatever the technique.
 enum class Rule : std::uint8_t {
-  receivers,  ///< some visible receiver faces the light; off: nothing runs and V is 1
-  culling,    ///< casters that cannot reach a visible receiver are left out
-  fitting,    ///< near and far of the light's views are fitted to the casters and receivers that matter
-  skipping    ///< a pass of which nothing changed is not run again
+  receivers,     ///< some visible receiver faces the light; off: nothing runs and V is 1
+  culling,       ///< casters that cannot reach a visible receiver are left out
+  fitting,       ///< near and far of the light's views are fitted to the casters and receivers that matter
+  skipping,      ///< a pass of which nothing changed is not run again
+  idleReceivers  ///< some receivers cast nothing: maps that are averaged hold them where no caster is
 };
 
 inline constexpr std::size_t kEffects = 10;
-inline constexpr std::size_t kRules = 4;
+inline constexpr std::size_t kRules = 5;
 
 constexpr std::size_t planIndex(Effect effect) {
   return static_cast<std::size_t>(effect);

@@ -9,6 +9,8 @@ uniform sampler2D gPosition;
 uniform sampler2D gNormal;
 uniform sampler2D gMask;
 uniform sampler2D depthMap;
+// The same for maps that are averaged: texels without a caster hold receivers that cast nothing (LightDepth::averaged).
+uniform sampler2D averagedMap;
 
 struct MapPoint {
   ivec2 pixel;
@@ -19,7 +21,7 @@ struct MapPoint {
   float bias;          // towards the light, in stored depth; see setFilterRadius
   float constantBias;  // its parts: without limit,
   float slopeBias;     // within it,
-  float texel;         // and times the radius: a texel's extent here, metres
+  vec2 texel;          // and times the radius: a texel's extent here, metres
   float rate;          // depth change per metre
   float limit;         // of corrections along the slope, in stored depth
 };
@@ -29,9 +31,10 @@ const float kSmallestCosine = 1e-6;
 // Rounding of positions that come through the camera's coordinates: a few units in the last place of a float.
 const float kPositionRounding = 4.0 * 1.1920929e-7;
 
-// A filter of that many texels about the receiver meets surfaces that bend away from its plane: the bias grows with it.
-void setFilterRadius(inout MapPoint r, float texels) {
-  r.bias = r.constantBias + min(r.slopeBias + bias_curvature * texels * r.texel * r.rate, r.limit);
+// A filter of that radius, in texels along each axis, meets surfaces that bend away from its plane: the bias grows with it.
+void setFilterRadius(inout MapPoint r, vec2 radius) {
+  const float metres = max(radius.x * r.texel.x, radius.y * r.texel.y);
+  r.bias = r.constantBias + min(r.slopeBias + bias_curvature * metres * r.rate, r.limit);
 }
 
 // Leaves pixels outside the receiver mask as the target was cleared: V = 1.
@@ -80,10 +83,16 @@ MapPoint mapPoint() {
                          kPositionRounding * max(mapTexel.z, mapTexel.w));
   r.constantBias = bias_constant * quantum;
   r.slopeBias = rounding + bias_slope * steepest;
-  r.texel = texel;
+  r.texel = texels;
   r.rate = rate;
-  setFilterRadius(r, mapFilter.x);
+  setFilterRadius(r, vec2(mapFilter.x));
   return r;
+}
+
+// Depth of the receiver at a texel's centre (in texels), before bias: its own, or that of its plane there.
+float depthAt(MapPoint r, vec2 centre) {
+  if (!BIAS_RECEIVER_PLANE) return r.depth;
+  return r.depth + clamp(dot(r.slope, centre - r.uv * mapTexel.zw), -r.limit, r.limit);
 }
 
 // 1 if the texel under `uv` holds nothing nearer to the light than the receiver; outside the map nothing is known and all is lit.
@@ -91,10 +100,8 @@ float isLit(MapPoint r, vec2 uv) {
   if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return 1.0;
   // Fetched at its centre, a texel is the same one on every sampler, whatever digits that keeps of a coordinate.
   const vec2 centre = floor(uv * mapTexel.zw) + 0.5;
-  float depth = r.depth;
   // The texel holds the depth at its centre: compare with the receiver's plane there.
-  if (BIAS_RECEIVER_PLANE) depth += clamp(dot(r.slope, centre - r.uv * mapTexel.zw), -r.limit, r.limit);
-  depth += r.bias;
+  float depth = depthAt(r, centre) + r.bias;
   // Beside a receiver's border its plane may be beyond far, where the map holds nothing: that is 0, and no blocker.
   if (GNOMON_DEFENCE(plane_beyond_far)) depth = max(depth, 0.0);
   return depth >= textureLod(depthMap, centre * mapTexel.xy, 0.0).r ? 1.0 : 0.0;
@@ -102,3 +109,9 @@ float isLit(MapPoint r, vec2 uv) {
 
 // The receiver's distance without its bias, from 0 at near to 1 at far: what representations of distances compare with.
 float unbiasedRange(MapPoint r) { return mapRange(r.metres - r.bias / r.rate); }
+
+// The same of its plane at the texel under `uv`.
+float unbiasedRangeAt(MapPoint r, vec2 uv) {
+  const float depth = depthAt(r, floor(uv * mapTexel.zw) + 0.5);
+  return mapRange(mapMetres(max(depth, 0.0)) - r.bias / r.rate);
+}

@@ -26,7 +26,10 @@ struct Filtered { Stored mean; };
 Filtered noTaps() { return Filtered(storedOf(vec4(0.0))); }
 
 void addTap(inout Filtered f, MapPoint p, vec2 uv, int before) {
-  const Stored s = fetchStored(storedMap, ivec2(floor(uv * mapTexel.zw)));
+  Stored s = fetchStored(storedMap, ivec2(floor(uv * mapTexel.zw)));
+#ifdef LIMITS
+  s = limited(s, p, uv);
+#endif
   // The first is the mean: it must not meet what nothing was written to.
   f.mean = before == 0 ? s : combine(f.mean, s, 1.0 / float(before + 1));
 }

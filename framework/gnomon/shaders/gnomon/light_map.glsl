@@ -9,7 +9,7 @@ layout(std140) uniform LightMap {
   vec4 mapTexel;      // 1 / size, size
   vec4 mapPrecision;  // x: 1 perspective; y: quantum of the stored depth; z: 1 relative to it; w: light to camera, metres
   vec4 mapFilter;     // x: radius of the filter, texels
-  vec4 mapSource;     // xy: extent of the source, metres (directional: metres a metre of distance); z: 1 disc; w: roll, radians
+  vec4 mapSource;     // xy: extent of the source, metres (directional: metres a metre of distance); along the map's axes; z: 1 disc
 };
 
 bool mapIsPerspective() { return mapPrecision.x != 0.0; }

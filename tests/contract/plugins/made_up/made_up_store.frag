@@ -1,4 +1,4 @@
 #include "projection"
 #include "representation"
 out vec4 stored;
-void main() { stored = texelOf(mapRange(mapMetres(texelFetch(depthMap, ivec2(gl_FragCoord.xy), 0).r))); }
+void main() { stored = texelOf(mapRange(mapMetres(texelFetch(averagedMap, ivec2(gl_FragCoord.xy), 0).r))); }
