@@ -55,6 +55,29 @@ TEST_F(ViewerLights, TheNextIsTakenInHandAndTheFirstAfterTheLast) {
   EXPECT_THAT(inHand, ::testing::ElementsAre(0, 1, 0));
 }
 
+/// The second of three lights is one that shadow_map refuses.
+constexpr const char* kOneRefused = R"({"scene": {"builtin": "layers"}, "output": {"size": [320, 240]},
+  "lights": [{"type": "spot", "position": [-1, 7, 0.6], "target": [0, 0, 0], "cone_half_angle_degrees": 45, "name": "key"},
+             {"type": "point", "position": [2, 5, 2], "name": "bulb", "intensity": 0.5},
+             {"type": "spot", "position": [3, 6, 2], "target": [0, 0, 0], "cone_half_angle_degrees": 45, "name": "fill"}],
+  "techniques": [{"technique": "shadow_map", "parameters": {"map_size": 256}}]})";
+
+TEST_F(ViewerLights, OneThatIsRefusedIsLeftOutWhicheverIsInHandAndTheViewerSaysSo) {
+  folder_.write("three.json", kOneRefused);
+  play(
+      "key H\nwait 20\nscreenshot first.png\nsave view.json\nkey J\nwait 20\nscreenshot second.png\nkey V\nkey T\nwait 5\n"
+      "key T\nkey J\nwait 20\nscreenshot third.png\n",
+      "three.json");
+  const Picture sum = runnersSum("view.json");
+  for (const char* name : {"first.png", "second.png", "third.png"}) {
+    EXPECT_LE(largestDifference(readPicture(folder_ / name), sum), 1) << name;
+  }
+  for (const Json& frame : frames()) {
+    EXPECT_EQ(frame["failure"], "");
+  }
+  EXPECT_THAT(frames().back()["left_out"][0].get<std::string>(), ::testing::HasSubstr("without light 'bulb': a point light"));
+}
+
 TEST_F(ViewerLights, EachMovesByItselfAndStaysWhereItWasPut) {
   play(
       "key H\nwait 3\nhold L\nmouse 100 100\nmouse 112 100\nrelease L\nkey J\nwait 3\nhold L\nmouse 100 130\nrelease L\nwait "

@@ -196,6 +196,7 @@ const TextureResource* App::other(Stage& stage, bool visibility) {
     return visibility ? &session.visibilityTexture(*stage.picture()) : &session.shadedTexture(*stage.picture());
   }
   if (!stage.render(before_, document_.techniques[before_].technique, false)) return nullptr;
+  if (visibility && !stage.entry(before_).refusal.empty()) return nullptr;
   return visibility ? &session.visibilityTexture(*stage.entry(before_).slot) : &stage.shaded(before_);
 }
 
@@ -203,6 +204,11 @@ PresentView App::view(Stage& stage, std::size_t shown, Panels& panels) {
   Session& session = stage.session();
   const Slot slot = *stage.entry(shown).slot;
   PresentView view{.left = &stage.shaded(shown)};
+  if (!stage.entry(shown).refusal.empty()) {  // of the light in hand there is nothing to look into or to compare
+    texture_ = -1;
+    compared_ = false;
+    return view;
+  }
   const auto textures = session.textures(slot);
   if (texture_ >= static_cast<int>(textures.size())) texture_ = -1;
   compared_ = false;
@@ -310,7 +316,7 @@ bool App::work(double milliseconds) {
     // Each measurement holds the window up for a moment: one whenever the rays have doubled.
     const bool old = !t.error || reference_->samples() >= 2 * t.errorSamples ||
                      (reference_->done() && t.errorSamples != reference_->samples());
-    if (hasReference() && old && entry.slot && entry.failure.empty()) {
+    if (hasReference() && old && entry.slot && entry.failure.empty() && entry.refusal.empty()) {
       t.error = reference_->error(stage.session().visibility(*entry.slot));
       t.errorSamples = reference_->samples();
       dirty_ = true;
@@ -330,7 +336,8 @@ bool App::isRefined() const {
   if (!wanted || stages_.empty() || !referenceFault_.empty() || document_.run.reference.technique.entry == nullptr) return true;
   if (moving() || dirty_ || !reference_ || referenceHas_ != versions_ || !reference_->done()) return false;
   const StageEntry& entry = stages_.at(1).stage->entry(shown_);
-  return !entry.slot || !entry.failure.empty() || document_.techniques[shown_].errorSamples == reference_->samples();
+  return !entry.slot || !entry.failure.empty() || !entry.refusal.empty() ||
+         document_.techniques[shown_].errorSamples == reference_->samples();
 }
 
 bool App::takeFullScreenWish() {

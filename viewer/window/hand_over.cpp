@@ -96,6 +96,7 @@ void App::captureAll() {
     for (std::size_t i = 0; i < document_.techniques.size(); ++i) {
       const ResolvedTechnique& technique = document_.techniques[i].technique;
       if (!stage.render(i, technique, false)) continue;
+      if (!stage.entry(i).refusal.empty()) continue;
       const Slot slot = *stage.entry(i).slot;
       const std::string stem = fmt::format("{}-{}", i + 1, technique.name());
       writePictures(folder, stem, {"shaded"}, true,
@@ -193,6 +194,7 @@ std::string App::frameLine() const {
   const StageEntry entry = whole == stages_.end() ? StageEntry{} : whole->second.stage->entry(current_);
   line["cpu_ms"] = entry.cpuMs;
   line["failure"] = entry.failure;
+  line["left_out"] = entry.leftOut;
   return line.dump(-1, ' ', false, Json::error_handler_t::replace);  // names and messages may be of any bytes
 }
 

@@ -36,7 +36,8 @@ void App::flip(int by) {
 }
 
 void App::stepTexture(int by) {
-  if (stages_.empty() || !stageOf(1).entry(current_).slot || !stageOf(1).entry(current_).failure.empty()) return;
+  if (stages_.empty() || !stageOf(1).entry(current_).slot) return;
+  if (!stageOf(1).entry(current_).failure.empty() || !stageOf(1).entry(current_).refusal.empty()) return;
   const auto count = static_cast<int>(stageOf(1).session().textures(*stageOf(1).entry(current_).slot).size()) + 1;
   texture_ = (texture_ + 1 + by + count) % count - 1;
 }

@@ -122,11 +122,12 @@ float Panels::technique(std::size_t shown) {
       lines.push_back("!not shown: " + entry.failure);
       if (app_.lastGood_ && *app_.lastGood_ != shown)
         lines.push_back("what you see is " + app_.document_.techniques[*app_.lastGood_].technique.name());
-    } else {
+    } else if (entry.refusal.empty()) {
       lines.push_back(fmt::format("cost   {:.2f} ms wall, {:.2f} ms cpu{}", entry.wallMs, entry.cpuMs,
                                   app_.showTimes_ && entry.timed ? " (timed pass by pass)" : ""));
       lines.push_back(errorLine(t));
     }
+    for (const std::string& left : entry.leftOut) lines.push_back("!" + left);
     if (reduced) {
       const glm::ivec2 size = staged->second.stage->session().outputSize();
       lines.push_back(fmt::format("!moving: drawn at 1/{} of the resolution, {}x{}", app_.reduction_, size.x, size.y));
@@ -219,7 +220,7 @@ void Panels::times() {
     o_.text(pen, fmt::format("{:<23}{:9.3f}{}", cut(p.name, 22), p.wallMs, p.ran ? "" : " skipped"), kText);
   }
   pen.y += line * 1.3f;
-  const std::size_t memory = e.slot && e.failure.empty() ? stage.session().memoryBytes(*e.slot) : 0;
+  const std::size_t memory = e.slot && e.failure.empty() && e.refusal.empty() ? stage.session().memoryBytes(*e.slot) : 0;
   o_.text(pen,
           fmt::format("memory {:.2f} MB   frame {:.1f} ms", static_cast<double>(memory) / 1e6,
                       app_.frameTimes_.empty() ? 0.0f : app_.frameTimes_.back()),

@@ -1,6 +1,7 @@
 #include "stage.h"
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include "gnomon/base/clock.h"
 
@@ -24,16 +25,36 @@ void update(std::vector<PassReport>& kept, std::vector<PassReport>&& now, bool t
 
 void Stage::setUp(StageEntry& entry, const ResolvedTechnique& technique) {
   entry.slot = session_.addSlot(technique.technique, technique.parameters);
-  entry.failure = refusalOf(*entry.slot);
-  if (!entry.failure.empty() || session_.lights() < 2) return;
   std::vector<Slot> all{*entry.slot};
   for (std::size_t light = 1; light < session_.lights(); ++light) {
-    const Slot slot = session_.addSlot(technique.technique, technique.parameters, light);
-    if (!refusalOf(slot).empty()) continue;
-    entry.others.push_back(slot);
-    all.push_back(slot);
+    entry.others.push_back(session_.addSlot(technique.technique, technique.parameters, light));
+    all.push_back(entry.others.back());
   }
   if (!entry.others.empty()) entry.sum = session_.addSum(all);
+  judge(entry);
+}
+
+void Stage::judge(StageEntry& entry) const {
+  entry.leftOut.clear();
+  entry.failure.clear();
+  entry.refusal = refusalOf(*entry.slot);
+  std::size_t serving = entry.refusal.empty() ? 1 : 0;
+  const auto leaveOut = [&](std::size_t light, const std::string& why) {
+    const std::string& name = session_.light(light).name;
+    entry.leftOut.push_back(fmt::format("without {}: {}", name.empty() ? "an unnamed light" : "light '" + name + "'", why));
+  };
+  if (!entry.refusal.empty()) leaveOut(0, entry.refusal);
+  for (std::size_t i = 0; i < entry.others.size(); ++i) {
+    const std::string why = refusalOf(entry.others[i]);
+    if (why.empty()) {
+      ++serving;
+    } else {
+      leaveOut(i + 1, why);
+    }
+  }
+  if (serving > 0) return;
+  entry.failure = entry.refusal;
+  entry.leftOut.clear();
 }
 
 bool Stage::render(std::size_t index, const ResolvedTechnique& technique, bool timePasses) {
@@ -46,6 +67,10 @@ bool Stage::render(std::size_t index, const ResolvedTechnique& technique, bool t
       if (!e.failure.empty()) return false;
     }
     passesRun_ += session_.runShared().counters.passesRun;
+    if (!e.refusal.empty()) {  // the others make the picture; there is nothing to time or to look into
+      passesRun_ += session_.frame(*e.sum).technique.counters.passesRun;
+      return true;
+    }
     if (cold) passesRun_ += session_.runTechnique(*e.slot).counters.passesRun;  // first draws compile: they are no cost to show
     glFinish();
     const double cpu = processCpuMs();
@@ -60,7 +85,9 @@ bool Stage::render(std::size_t index, const ResolvedTechnique& technique, bool t
     e.timed = e.timed || timePasses;
     passesRun_ += report.counters.passesRun;
     update(e.passes, std::move(report.passes), timePasses);
-    for (const Slot other : e.others) passesRun_ += session_.runTechnique(other).counters.passesRun;
+    for (const Slot other : e.others) {
+      if (refusalOf(other).empty()) passesRun_ += session_.runTechnique(other).counters.passesRun;
+    }
     passesRun_ += session_.runShading(*e.slot).counters.passesRun;
     if (e.sum) passesRun_ += session_.runShading(*e.sum).counters.passesRun;
     return true;
@@ -80,7 +107,7 @@ std::string Stage::change(std::size_t index, const ResolvedTechnique& technique)
     session_.setParameters(*e.slot, technique.technique, technique.parameters);
     for (const Slot other : e.others) session_.setParameters(other, technique.technique, technique.parameters);
     e.timed = false;
-    e.failure = refusalOf(*e.slot);
+    judge(e);
     return e.failure;
   } catch (const std::exception& error) {
     return error.what();
@@ -97,7 +124,7 @@ std::string Stage::replace(std::size_t index, const ResolvedTechnique& technique
     session_.replaceSlot(*e.slot, technique.technique, technique.parameters);
     for (const Slot other : e.others) session_.replaceSlot(other, technique.technique, technique.parameters);
     e.timed = false;
-    e.failure = refusalOf(*e.slot);
+    judge(e);
     return {};
   } catch (const std::exception& error) {
     return error.what();

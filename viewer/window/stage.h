@@ -12,13 +12,15 @@ namespace gnomon {
 
 /// What one technique does on a stage.
 struct StageEntry {
-  std::optional<Slot> slot = {};        ///< of the light that is worked with; set up on first use
-  std::vector<Slot> others = {};        ///< of the other lights, those that it does not refuse
-  std::optional<Slot> sum = {};         ///< the picture of all of them, where there are others
-  std::string failure = {};             ///< why it shows nothing; empty while it works
-  std::vector<PassReport> passes = {};  ///< the last run of each
-  bool timed = false;                   ///< passes have been timed one by one
-  double cpuMs = 0.0;                   ///< of the last frame in which any of its passes ran
+  std::optional<Slot> slot = {};          ///< of the light that is worked with; set up on first use
+  std::vector<Slot> others = {};          ///< of the other lights, in their order
+  std::optional<Slot> sum = {};           ///< the picture of all of them, where there are others
+  std::string failure = {};               ///< why it shows nothing; empty while it works
+  std::string refusal = {};               ///< of the light that is worked with, where others are shown all the same
+  std::vector<std::string> leftOut = {};  ///< lights that the picture lacks, a sentence each
+  std::vector<PassReport> passes = {};    ///< the last run of each
+  bool timed = false;                     ///< passes have been timed one by one
+  double cpuMs = 0.0;                     ///< of the last frame in which any of its passes ran
   double wallMs = 0.0;
 };
 
@@ -59,6 +61,8 @@ class Stage {
  private:
   std::string refusalOf(Slot slot) const { return session_.support(slot).refusal; }
   void setUp(StageEntry& entry, const ResolvedTechnique& technique);
+  /// Which lights are refused now.
+  void judge(StageEntry& entry) const;
 
   Session session_;
   std::vector<StageEntry> entries_;
