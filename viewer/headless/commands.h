@@ -41,6 +41,12 @@ struct CheckOptions {
   bool list = false;
 };
 
+struct CompareOptions {
+  std::filesystem::path before;  ///< a folder of results, or a results file
+  std::filesystem::path after;
+  bool all = false;  ///< also what did not change
+};
+
 int listCommand(const CommonOptions& common);
 int describeCommand(const CommonOptions& common, const std::string& technique);
 int scenesCommand(const CommonOptions& common);
@@ -50,6 +56,8 @@ int planCommand(const CommonOptions& common, const std::filesystem::path& config
 int renderCommand(const CommonOptions& common, const RenderOptions& options);
 int stabilityCommand(const CommonOptions& common, const StabilityOptions& options);
 int checkCommand(const CommonOptions& common, const CheckOptions& options);
+/// 1 where anything got worse.
+int compareCommand(const CommonOptions& common, const CompareOptions& options);
 /// Writes the folder `in`/`name`.
 int newTechniqueCommand(const CommonOptions& common, const std::string& name, const std::filesystem::path& in);
 

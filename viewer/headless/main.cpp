@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   RenderOptions render;
   StabilityOptions stability;
   CheckOptions check;
+  CompareOptions compare;
   std::string technique;
   std::vector<std::filesystem::path> files;
   std::filesystem::path config;
@@ -114,6 +115,15 @@ int run(int argc, char** argv) {
   hard->add_flag("--list", stability.list, "what the cases are, and what each is for");
   hard->add_flag("--json", common.json, "for programs");
   hard->callback([&] { exitCode = stabilityCommand(common, stability); });
+
+  CLI::App* comparing =
+      app.add_subcommand("compare", "two result folders: what got faster, slower, better or worse beyond its intervals");
+  comparing->add_option("before", compare.before, "folder that a batch wrote before the change")->required();
+  comparing->add_option("after", compare.after, "folder that one wrote after it")->required();
+  comparing->add_flag("--all", compare.all, "also what did not change");
+  comparing->add_flag("--json", common.json, "for programs");
+  comparing->footer("Exit codes: 0 nothing is worse, 1 something is, 2 bad usage or input.");
+  comparing->callback([&] { exitCode = compareCommand(common, compare); });
 
   CLI::App* starting = app.add_subcommand("new-technique", "writes a plugin that builds and runs, with one test to fill in");
   addCommon(starting, false);

@@ -66,15 +66,16 @@ struct TimedPair {
 
 /// What was not or could not be measured is absent. Medians, p95 and n are over the candidate's frames, on the plan's clock.
 struct TimingFigures {
-  std::optional<double> medianMs;
-  std::optional<double> wallMedianMs;
-  std::optional<double> madMs;     ///< median absolute deviation, unscaled
-  std::optional<Interval> ci95Ms;  ///< of the median
-  std::optional<double> p95Ms;
-  std::optional<int> n;
-  std::optional<double> ratio;  ///< median over pairs of (A1+A2)/(B1+B2); none where a baseline pair took no time by this clock
-  std::optional<Interval> ratioCi95;
-  std::vector<TimedPair> pairs;
+  std::optional<double> medianMs = {};
+  std::optional<double> wallMedianMs = {};
+  std::optional<double> madMs = {};     ///< median absolute deviation, unscaled
+  std::optional<Interval> ci95Ms = {};  ///< of the median
+  std::optional<double> p95Ms = {};
+  std::optional<int> n = {};
+  std::optional<double> ratio =
+      {};  ///< median over pairs of (A1+A2)/(B1+B2); none where a baseline pair took no time by this clock
+  std::optional<Interval> ratioCi95 = {};
+  std::vector<TimedPair> pairs = {};
 
   bool operator==(const TimingFigures&) const = default;
 };

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "gnomon/base/files.h"
+#include "gnomon/run/regime.h"
 #include "gnomon/run/scene_choice.h"
 
 namespace gnomon {
@@ -110,8 +111,9 @@ std::shared_ptr<const FieldTable> outputTable() {
 std::shared_ptr<const FieldTable> measureTable() {
   return ParameterTable<MeasureChoice>{
       list("regimes", &MeasureChoice::regimes, nullptr,
-           "what changes from frame to frame: dynamic: the light turns; static: nothing")
-          .among({"dynamic", "static"}),
+           "what changes from frame to frame: dynamic: the light turns; animated: it turns and casters move; camera: the "
+           "camera turns; static: nothing")
+          .among(RegimePath::names()),
       integer("frames", &MeasureChoice::frames, {.min = 1, .max = 100000}, Binding::structure, "timed frames of each regime"),
       integer("blocks", &MeasureChoice::blocks, {.min = 1, .max = 1000}, Binding::structure,
               "blocks of the order technique, baseline, baseline, technique that share the frames")}

@@ -99,14 +99,14 @@ TEST(RunConfig, SizesEndAt16384) {
 }
 
 TEST(RunConfig, ImagesAndRegimesAreNames) {
-  EXPECT_EQ(
-      faults(with(R"("output": {"images": ["shadde"]}, "measure": {"regimes": ["dynamics"], "frames": 0})")),
-      (std::vector<std::string>{
-          "runs/c.json: /output/images/0: unknown name \"shadde\"; did you mean \"shaded\"? allowed: shaded, visibility, "
-          "error, "
-          "class, reference",
-          "runs/c.json: /measure/regimes/0: unknown name \"dynamics\"; did you mean \"dynamic\"? allowed: dynamic, static",
-          "runs/c.json: /measure/frames: found 0; allowed: an integer from 1 to 100000"}));
+  EXPECT_EQ(faults(with(R"("output": {"images": ["shadde"]}, "measure": {"regimes": ["dynamics"], "frames": 0})")),
+            (std::vector<std::string>{
+                "runs/c.json: /output/images/0: unknown name \"shadde\"; did you mean \"shaded\"? allowed: shaded, visibility, "
+                "error, "
+                "class, reference",
+                "runs/c.json: /measure/regimes/0: unknown name \"dynamics\"; did you mean \"dynamic\"? allowed: dynamic, "
+                "animated, camera, static",
+                "runs/c.json: /measure/frames: found 0; allowed: an integer from 1 to 100000"}));
 }
 
 TEST(RunConfig, AnEmptyListOfLightsIsAFault) {

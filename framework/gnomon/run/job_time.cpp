@@ -4,19 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <glm/gtc/constants.hpp>
-#include <glm/gtc/quaternion.hpp>
-#include <glm/trigonometric.hpp>
+#include <optional>
 
 #include "gnomon/base/clock.h"
 #include "gnomon/base/statistics.h"
+#include "gnomon/run/regime.h"
 
 namespace gnomon {
 
 namespace {
 
-constexpr double kTurnDegrees = 0.5;
 constexpr int kPassTimingFrames = 3;
 
 class JobTimer {
@@ -25,11 +22,7 @@ class JobTimer {
     if (stage_.options.clock == Clock::gpu) gpuTimer_ = gl::makeQuery(GL_TIME_ELAPSED);
   }
 
-  /// Moves the light and times the technique's own passes, finished before and after.
-  FrameTime timedFrame(Slot slot, const Light& pose) {
-    session_.moveLight(pose);
-    return timedFrame(slot);
-  }
+  /// Times the technique's own passes, finished before and after.
   FrameTime timedFrame(Slot slot) {
     session_.runShared();
     glFinish();
@@ -50,59 +43,70 @@ class JobTimer {
 
   CpuPasses cpuPassesOf(Slot slot) const { return session_.hasCpuPasses(slot) ? CpuPasses::some : CpuPasses::none; }
 
-  TimeRecord time(Slot candidate, Slot baseline) {
+  TimeRecord time(Slot candidate, std::optional<Slot> baseline) {
     TimeRecord record;
-    const Clock clock = clockForPair(*stage_.options.clock, cpuPassesOf(candidate), cpuPassesOf(baseline));
+    const Clock clock = clockForPair(*stage_.options.clock, cpuPassesOf(candidate), cpuPassesOf(baseline.value_or(candidate)));
     record.timer = clock;
     const int poses = posesOf(stage_.run.config.measure);
     const TimingPlan plan{.poses = poses, .blocks = stage_.run.config.measure.blocks, .clock = clock};
     for (const std::string& regime : stage_.run.config.measure.regimes) {
-      const bool moving = regime == "dynamic";
       const TraceSlice slice(stage_.options.trace, "time: " + regime, {{"clock", clockName(clock)}});
-      session_.moveLight(stage_.nominal());
+      RegimePath path(regime, stage_.run, stage_.light);
       PoseSteps steps(poses);
       TimingFigures figures = measurePaired(
           [&](Side side, int pose) {
-            const Slot slot = side == Side::candidate ? candidate : baseline;
-            return moving ? timedFrame(slot, lightAtPose(stage_.nominal(), steps.next(side, pose), steps.count()))
-                          : timedFrame(slot);
+            // Without a baseline its frames take no time at all, and there is no ratio to nothing.
+            if (side == Side::baseline && !baseline) return FrameTime{.gpuMs = gpuTimer_ ? std::optional(0.0) : std::nullopt};
+            path.go(session_, steps.next(side, pose), steps.count());
+            return timedFrame(side == Side::candidate ? candidate : *baseline);
           },
           plan);
-      if (!moving) {  // nothing runs: what a ratio of two nothings says is noise
+      if (!path.moves()) {  // nothing runs: what a ratio of two nothings says is noise
         figures.ratio.reset();
         figures.ratioCi95.reset();
       }
       record.regimes[regime] = std::move(figures);
+      path.home(session_);
     }
     record.passes = passTimes(candidate, poses);
-    session_.moveLight(stage_.nominal());
+    double sum = 0.0;
+    for (const PassTime& pass : record.passes) sum += pass.ms.value_or(0.0);
+    record.passSumMs = sum;
+    if (const auto dynamic = record.regimes.find("dynamic"); dynamic != record.regimes.end() && dynamic->second.medianMs)
+      record.gapMs = sum - *dynamic->second.medianMs;
+    record.repeats = 1;
     return record;
   }
 
   std::vector<PassTime> passTimes(Slot slot, int poses) {
     const TraceSlice slice(stage_.options.trace, "passes", {{"finish", "after each pass: their sum exceeds a timed frame"}});
-    std::vector<std::string> names;
-    std::vector<std::vector<double>> times;
+    struct Times {
+      std::string name;
+      std::vector<double> own, wall;
+    };
+    std::vector<Times> times;
     const int positions = std::max(poses, 2);
-    session_.moveLight(stage_.nominal());
+    RegimePath path("dynamic", stage_.run, stage_.light);
+    path.home(session_);
     session_.runShared();
     session_.runTechnique(slot);
     for (int i = 0; i < kPassTimingFrames; ++i) {  // never where the frame before stood: nothing would run
-      session_.moveLight(lightAtPose(stage_.nominal(), (i + 1) % positions, positions));
+      path.go(session_, (i + 1) % positions, positions);
       session_.runShared();
       glFinish();
       const double start = wallMs();
       const GraphReport report = session_.runTechnique(slot, {.timePasses = true});
       traceFrame(start, wallMs() - start, report);
       times.resize(report.passes.size());
-      names.resize(report.passes.size());
       for (std::size_t p = 0; p < report.passes.size(); ++p) {
-        names[p] = report.passes[p].name;
-        times[p].push_back(stage_.options.clock == Clock::cpu ? report.passes[p].cpuMs : report.passes[p].wallMs);
+        times[p].name = report.passes[p].name;
+        times[p].own.push_back(stage_.options.clock == Clock::cpu ? report.passes[p].cpuMs : report.passes[p].wallMs);
+        times[p].wall.push_back(report.passes[p].wallMs);
       }
     }
+    path.home(session_);
     std::vector<PassTime> passes;
-    for (std::size_t p = 0; p < names.size(); ++p) passes.push_back({names[p], median(times[p])});
+    for (const Times& t : times) passes.push_back({t.name, median(t.own), median(t.wall)});
     return passes;
   }
 
@@ -125,19 +129,7 @@ class JobTimer {
 
 }  // namespace
 
-Light lightAtPose(const Light& light, int pose, int poses) {
-  const double phase = 2.0 * glm::pi<double>() * pose / poses;
-  // A circle through the nominal pose: never farther from it than its diameter.
-  const double yaw = 0.5 * kTurnDegrees * std::sin(phase);
-  const double pitch = 0.5 * kTurnDegrees * (1.0 - std::cos(phase));
-  const LightFrame axes = lightFrame(light);
-  const glm::dquat turn = glm::angleAxis(glm::radians(yaw), axes.y) * glm::angleAxis(glm::radians(pitch), axes.x);
-  Light turned = light;
-  turned.position = light.target + turn * (light.position - light.target);
-  return turned;
-}
-
-TimeRecord measureTime(LightStage& stage, Slot candidate, Slot baseline) {
+TimeRecord measureTime(LightStage& stage, Slot candidate, std::optional<Slot> baseline) {
   return JobTimer(stage).time(candidate, baseline);
 }
 

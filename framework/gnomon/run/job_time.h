@@ -5,7 +5,8 @@
 
 namespace gnomon {
 
-/// The regimes of the config, by the stage's clock (which must be one). The light stands at its nominal pose afterwards.
-TimeRecord measureTime(LightStage& stage, Slot candidate, Slot baseline);
+/// The regimes of the config, by the stage's clock (which must be one). Without a baseline there are no ratios. Light, camera
+/// and casters stand at their nominal poses afterwards.
+TimeRecord measureTime(LightStage& stage, Slot candidate, std::optional<Slot> baseline);
 
 }  // namespace gnomon

@@ -78,7 +78,10 @@ struct LightRun::State : LightStage {
     if (options.clock) {
       const Slot baseline =
           traced("baseline's set-up", [&] { return session.addSlot(run.baseline.technique, run.baseline.parameters); });
-      if (session.support(baseline).ok()) record.time = measureTime(*this, slot, baseline);
+      const std::string& refusal = session.support(baseline).refusal;
+      record.time = measureTime(*this, slot, refusal.empty() ? std::optional(baseline) : std::nullopt);
+      if (!refusal.empty() && record.reason.empty())
+        record.reason = fmt::format("no ratio: the baseline '{}' refuses this light: {}", run.baseline.name(), refusal);
     }
   }
 };

@@ -131,6 +131,7 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
     loaded = false;
     for (const Problem& p : error.problems()) problems.add(p.file.empty() ? file : p.file, p.pointer, p.message);
   }
+  run.time = choice.time;
   run.sceneName = choice.builtin.empty() ? choice.file.filename().string() : choice.builtin;
   run.lights = config.lights.value_or(run.scene.lights);
   if (loaded && !config.lights && run.lights.empty()) {

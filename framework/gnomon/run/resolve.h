@@ -35,6 +35,7 @@ struct ResolvedRun {
   std::string sceneName;
   std::vector<Light> lights;
   Camera camera;
+  double time = 0.0;  ///< seconds: the scene's pose
   ResolvedTechnique reference;
   ResolvedTechnique baseline;
   std::vector<ResolvedJob> jobs;
