@@ -41,6 +41,15 @@ TEST_F(SharedSlots, TheSecondFindsTheMapOfTheFirst) {
   EXPECT_THAT(frame(second_), testing::Not(Contains("light depth")));
 }
 
+TEST_F(SharedSlots, TechniquesThatAskForOneMapGetOne) {  // whatever they make of it
+  int maps = 0;
+  for (const char* technique : {"pcss", "pcss_vsm", "pcss_esm"}) {
+    const std::vector<std::string> passes = frame(addSlot(session_, technique, kOne));
+    maps += static_cast<int>(std::count(passes.begin(), passes.end(), "light depth"));
+  }
+  EXPECT_EQ(maps, 1);
+}
+
 TEST_F(SharedSlots, FlippingUnderAMovingLightDrawsTheMapOnceForEachPose) {
   int maps = 0;
   for (int pose = 0; pose < 5; ++pose) {
