@@ -34,7 +34,9 @@ class Composed : public ::testing::Test {
     try {
       registry.open("mine");
     } catch (const InputError& error) {
-      return error.problems().at(0).line();
+      std::string lines;
+      for (const Problem& problem : error.problems()) lines += problem.line() + "\n";
+      return lines;
     }
     return "opened";
   }
@@ -75,7 +77,14 @@ TEST_F(Composed, AnUnknownComponentIsNamedWithThoseThereAre) {
 }
 
 TEST_F(Composed, AComponentOfAnotherAxisIsNotTaken) {
-  EXPECT_THAT(whyNot(with("depth", "single", "nearest")), HasSubstr("no projection is registered as 'depth'"));
+  EXPECT_THAT(whyNot(with("depth", "single", "nearest")),
+              HasSubstr("no projection is registered as 'depth' (depth is a representation)"));
+}
+
+TEST_F(Composed, AllThatIsWrongIsToldAtOnceWithTheNearestNames) {
+  const std::string why = whyNot(with("singel", "vms", "nearest"));
+  EXPECT_THAT(why, HasSubstr("did you mean 'single'?"));
+  EXPECT_THAT(why, HasSubstr("did you mean 'vsm'?"));
 }
 
 TEST_F(Composed, WhatMakesNoSenseIsRefusedWithTheReason) {

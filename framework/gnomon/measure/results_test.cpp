@@ -124,6 +124,26 @@ TEST(Results, KeysAreThoseOfTheFormat) {
   EXPECT_EQ(keysOf(line["machine"]), (std::set<std::string>{"renderer", "cpu"}));
 }
 
+/// Every key of an object and of what it holds, but for names that the record's author chose.
+void collectKeys(const json& value, std::set<std::string>& names) {
+  if (value.is_array()) {
+    for (const json& element : value) collectKeys(element, names);
+  }
+  if (!value.is_object()) return;
+  for (const auto& [name, inner] : value.items()) {
+    names.insert(name);
+    if (name != "parameters" && name != "reads_by_format") collectKeys(inner, names);
+  }
+}
+
+TEST(Results, EveryKeyIsExplainedInTheDocument) {
+  std::set<std::string> names;
+  collectKeys(json::parse(toJsonLine(fullRecord())), names);
+  const std::string document = readFile(std::filesystem::path(GNOMON_SOURCE_DIR) / "docs" / "measuring.md");
+  for (const std::string& name : names)
+    EXPECT_NE(document.find("`" + name + "`"), std::string::npos) << "docs/measuring.md does not name " << name;
+}
+
 TEST(Results, WhatWasNotMeasuredIsNull) {
   JobRecord record;
   record.job = "k";

@@ -1,6 +1,7 @@
 #include "gnomon/technique/registry.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -172,15 +173,21 @@ const PluginEntries& Registry::openLibrary(const std::filesystem::path& library,
 }
 
 const RegisteredComponent& Registry::component(const std::string& name, Axis axis, const Location& where) const {
-  std::string list;
+  std::vector<std::string> names;
+  std::string elsewhere;
   for (const RegisteredComponent& c : components_) {
-    if (c.declaration.axis != axis) continue;
-    if (c.declaration.name == name) return c;
-    list += (list.empty() ? "" : ", ") + c.declaration.name;
+    if (c.declaration.axis == axis) {
+      if (c.declaration.name == name) return c;
+      names.push_back(c.declaration.name);
+    } else if (c.declaration.name == name) {
+      elsewhere = fmt::format(" ({0} is a {1})", name, axisName(c.declaration.axis));
+    }
   }
-  throw InputError(
-      {{where.file, where.pointer,
-        fmt::format("no {} is registered as '{}'; there are {}", axisName(axis), name, list.empty() ? "none" : list)}});
+  const std::string nearest = elsewhere.empty() ? nearestName(name, names) : "";
+  throw InputError({{where.file, where.pointer,
+                     fmt::format("no {} is registered as '{}'{}; {}there {}", axisName(axis), name, elsewhere,
+                                 nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest),
+                                 names.empty() ? "are none" : fmt::format("are {}", fmt::join(names, ", ")))}});
 }
 
 const Component& Registry::openComponent(const RegisteredComponent& registered) {
@@ -197,12 +204,18 @@ OpenTechnique Registry::openComposed(const RegisteredTechnique& registered) {
   const Location where{registered.file.string(), "/techniques/" + declaration.name + "/compose"};
   OpenTechnique opened{&registered, nullptr, {registered.file.parent_path()}, {}};
   Components components{};
+  Problems problems;  // of all three
   for (const Axis axis : kAxes) {
-    const RegisteredComponent& found = component(declaration.compose->of(axis), axis, where.child(axisName(axis)));
-    components[static_cast<std::size_t>(axis)] = &openComponent(found);
-    opened.directories.push_back(found.file.parent_path());
-    opened.libraries.push_back(found.library);
+    try {
+      const RegisteredComponent& found = component(declaration.compose->of(axis), axis, where.child(axisName(axis)));
+      components[static_cast<std::size_t>(axis)] = &openComponent(found);
+      opened.directories.push_back(found.file.parent_path());
+      opened.libraries.push_back(found.library);
+    } catch (const InputError& error) {
+      for (const Problem& p : error.problems()) problems.add(p.file, p.pointer, p.message);
+    }
   }
+  problems.throwIfAny();
   try {
     opened.entry = &libraries_->composed(declaration.name, components);
   } catch (const Error& error) {
