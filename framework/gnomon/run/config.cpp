@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -177,6 +178,26 @@ RunConfig readRunConfig(const std::filesystem::path& path, Problems& problems) {
   return readRunConfigText(path, text, problems);
 }
 
+namespace {
+
+/// What a table's check refuses across keys, in the schema's words: unless `selector` is one of `values`, `key` is as
+/// `otherwise` says; without that, what it is when nobody sets it.
+void onlyWith(Json& object, const std::string& selector, const std::vector<std::string>& values, const std::string& key,
+              Json otherwise = {}) {
+  const Json& properties = object["properties"];
+  if (otherwise.is_null()) otherwise["const"] = properties[key]["default"];
+  Json other;
+  other["properties"][selector]["not"]["enum"] = values;
+  const auto unset = properties[selector].value("default", std::string());
+  if (std::find(values.begin(), values.end(), unset) != values.end()) other["required"] = Json::array({selector});
+  Json rule;
+  rule["if"] = std::move(other);
+  rule["then"]["properties"][key] = std::move(otherwise);
+  object["allOf"].push_back(std::move(rule));
+}
+
+}  // namespace
+
 Json runConfigSchema() {
   const RunConfig blank;
   Json schema = schemaOf(*configTable(), &blank);
@@ -186,6 +207,22 @@ Json runConfigSchema() {
   properties["name"]["minLength"] = 1;
   properties["lights"]["minItems"] = 1;
   properties["techniques"]["minItems"] = 1;
+  Json& light = properties["lights"]["items"];
+  onlyWith(light, "type", {"spot"}, "cone_half_angle_degrees");
+  Json noSource;
+  noSource["properties"]["shape"]["const"] = "none";
+  onlyWith(light, "type", {"spot"}, "source", noSource);
+  onlyWith(light, "type", {"point"}, "radius");
+  onlyWith(light, "type", {"directional"}, "angular_diameter_degrees");
+  Json& source = light["properties"]["source"];
+  onlyWith(source, "shape", {"rectangle"}, "size");
+  onlyWith(source, "shape", {"disc"}, "radius");
+  onlyWith(source, "shape", {"rectangle", "disc"}, "roll_degrees");
+  Json& camera = properties["camera"];
+  onlyWith(camera, "type", {"perspective"}, "vertical_fov_degrees");
+  onlyWith(camera, "type", {"orthographic"}, "height");
+  camera["properties"]["vertical_fov_degrees"].erase("maximum");
+  camera["properties"]["vertical_fov_degrees"]["exclusiveMaximum"] = 180;
   return schema;
 }
 

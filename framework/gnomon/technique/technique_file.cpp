@@ -152,7 +152,24 @@ Json techniqueFileSchema() {
   const TechniqueFile blank;
   Json schema = schemaOf(*fileTable(), &blank);
   schema["title"] = "Gnomon technique file";
-  schema["properties"]["library"]["pattern"] = kNamePattern;
+  Json& properties = schema["properties"];
+  properties["library"]["pattern"] = kNamePattern;
+  // As checkMaker and checkLibrary say.
+  const auto has = [](const std::vector<std::string>& keys) {
+    Json rule;
+    rule["required"] = keys;
+    return rule;
+  };
+  Json& technique = properties["techniques"]["additionalProperties"];
+  technique["properties"]["entry"]["minLength"] = 1;
+  technique["anyOf"] = Json::array({has({"entry"}), has({"compose"})});
+  technique["not"] = has({"entry", "compose"});
+  schema["anyOf"] = Json::array({has({"techniques"}), has({"components"})});
+  Json composedAlone;
+  composedAlone["not"] = has({"components"});
+  composedAlone["properties"]["techniques"]["additionalProperties"]["not"] = has({"entry"});
+  schema["if"]["not"] = composedAlone;
+  schema["then"] = has({"library"});
   return schema;
 }
 
