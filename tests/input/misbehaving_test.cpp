@@ -39,6 +39,11 @@ const std::vector<Misdeed> kMisdeeds{
     {"not_a_number", "ok", {"V is nan at pixel (63, 47)", "at 1 pixels"}},
     {"visibility_of_two", "ok", {"V is 2 at pixel (0, 0)", "at 1 pixels"}},
     {"leaves_state", "ok", {}},
+    {"leaves_conditional", "ok", {}},
+    {"leaves_feedback", "ok", {}},
+    {"leaves_rounding", "ok", {}},
+    {"no_technique", "failed", {"its entry 'mischief' made no technique"}},
+    {"writes_foreign_buffers", "failed", {"which belongs to others"}},
 };
 
 /// A batch of shadow_map, the faults and pcf; also the one without the faults.

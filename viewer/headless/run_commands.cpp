@@ -33,11 +33,11 @@ class ProgressLine {
                                    : "";
       fmt::print(stderr, "\r\033[K[{}/{}{}] {}", done, total, left, what);
       if (record != nullptr && !record->reason.empty())
-        fmt::print(stderr, "\r\033[K{} {}: {}\n", what, jobStatusName(record->status), record->reason);
+        fmt::print(stderr, "\r\033[K{} {}: {}\n", what, jobStatusName(record->status), oneLine(record->reason));
       if (done == total && record != nullptr) fmt::print(stderr, "\r\033[K");
     } else if (record != nullptr) {
       fmt::print(stderr, "[{}/{}, {:.0f} s] {}: {}{}\n", done, total, elapsed, what, jobStatusName(record->status),
-                 record->reason.empty() ? "" : ", " + record->reason);
+                 record->reason.empty() ? "" : ", " + oneLine(record->reason));
     }
     std::fflush(stderr);
   }

@@ -53,7 +53,33 @@ void restoreRasterising() {
   glLogicOp(GL_COPY);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glPolygonOffset(0.0f, 0.0f);
+  glBlendColor(0.0f, 0.0f, 0.0f, 0.0f);
+  glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+  glPrimitiveRestartIndex(0);
+  glPatchParameteri(GL_PATCH_VERTICES, 3);
+  glPointSize(1.0f);
+  glMinSampleShading(0.0f);
+  glSampleMaski(0, ~0U);
+  glSampleCoverage(1.0f, GL_FALSE);
+  glClampColor(GL_CLAMP_READ_COLOR, GL_FIXED_ONLY);
 }
+
+/// What encloses drawing until it is ended. Nothing tells whether a conditional rendering is under way, so that ending one is
+/// tried, unheard.
+void endEnclosures() {
+  GLboolean feedback = GL_FALSE;
+  glGetBooleanv(GL_TRANSFORM_FEEDBACK_BUFFER_ACTIVE, &feedback);
+  if (feedback == GL_TRUE) glEndTransformFeedback();
+  glBindTransformFeedback(GL_TRANSFORM_FEEDBACK, 0);
+  const GLboolean heard = glIsEnabled(GL_DEBUG_OUTPUT);
+  glDisable(GL_DEBUG_OUTPUT);
+  glEndConditionalRender();
+  while (glGetError() != GL_NO_ERROR) {
+  }
+  if (heard == GL_TRUE) glEnable(GL_DEBUG_OUTPUT);
+}
+
+}  // namespace
 
 void restoreTransfers() {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
@@ -66,9 +92,8 @@ void restoreTransfers() {
     glPixelStorei(none, 0);
 }
 
-}  // namespace
-
 void restoreState() {
+  endEnclosures();
   restoreSwitches();
   restoreRasterising();
   restoreTransfers();

@@ -7,4 +7,7 @@ namespace gnomon::gl {
 /// does not set for each pass anyway. Bindings of programs, vertex arrays, framebuffers and textures are not among it.
 void restoreState();
 
+/// That part of it which decides how pixels are read into memory, and written from it.
+void restoreTransfers();
+
 }  // namespace gnomon::gl

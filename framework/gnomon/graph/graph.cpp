@@ -17,7 +17,11 @@ class Uniforms final : public UniformWriter {
  public:
   explicit Uniforms(const std::vector<BufferSlot>& buffers) : buffers_(buffers) {}
   void write(Buffer buffer, std::span<const std::byte> bytes) override {
-    writeBuffer(*buffers_.at(static_cast<std::size_t>(buffer.id)).resource, bytes);
+    if (buffer.id < 0 || static_cast<std::size_t>(buffer.id) >= buffers_.size())
+      throw Error("update writes a buffer that was never declared");
+    const BufferSlot& slot = buffers_[static_cast<std::size_t>(buffer.id)];
+    if (slot.imported) throw Error("update writes buffer '" + slot.resource->name + "', which belongs to others");
+    writeBuffer(*slot.resource, bytes);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "gnomon/base/error.h"
+#include "gnomon/gl/state.h"
 #include "gnomon/graph/state.h"
 
 namespace gnomon {
@@ -40,7 +41,8 @@ std::size_t bytesOf(const TextureInfo& info) {
 }
 
 void readInto(const TextureResource& texture, std::vector<float>& out, std::vector<std::uint8_t>& bytes) {
-  glFinish();  // reading waits for what was drawn, but software renderers were seen not to under load
+  gl::restoreTransfers();  // code of a plugin may read in the middle of a pass of its own
+  glFinish();              // reading waits for what was drawn, but software renderers were seen not to under load
   const FormatFacts& facts = formatFacts(texture.info.format);
   out.resize(texelCount(texture.info) * static_cast<std::size_t>(facts.channels));
   if (texture.info.format == Format::r8) {  // several times as fast as the driver's conversion
@@ -57,6 +59,7 @@ void readInto(const TextureResource& texture, std::vector<float>& out, std::vect
 
 void readIntegersInto(const TextureResource& texture, std::vector<std::uint32_t>& out) {
   out.resize(texelCount(texture.info) * 2);
+  gl::restoreTransfers();
   glFinish();  // as above
   glGetTextureImage(texture.object.name(), 0, GL_RG_INTEGER, GL_UNSIGNED_INT, static_cast<GLsizei>(out.size() * 4), out.data());
 }
@@ -67,6 +70,7 @@ void uploadTexels(const TextureResource& texture, std::span<const float> values)
   if (values.size() != wanted) {
     throw Error(fmt::format("texture '{}' has {} values, {} were written", texture.name, wanted, values.size()));
   }
+  gl::restoreTransfers();
   const auto [width, height] = std::pair(texture.info.size.x, texture.info.size.y);
   const GLuint name = texture.object.name();
   const GLenum layout = channelLayout(facts);

@@ -52,7 +52,7 @@ std::string parametersOf(const JobRecord& record, const std::vector<JobRecord>& 
 std::vector<std::string> row(const JobRecord& r, const std::vector<JobRecord>& records) {
   std::vector<std::string> cells{r.technique, parametersOf(r, records)};
   if (r.status != JobStatus::ok) {
-    cells.push_back(jobStatusName(r.status) + ": " + r.reason);
+    cells.push_back(jobStatusName(r.status) + ": " + oneLine(r.reason));
     return cells;
   }
   const ErrorFigures error = r.error.value_or(ErrorFigures{});
@@ -78,6 +78,18 @@ std::vector<std::string> row(const JobRecord& r, const std::vector<JobRecord>& r
 }
 
 }  // namespace
+
+std::string oneLine(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    if (c == '\n') {
+      line += line.empty() ? "" : " | ";
+    } else if (c != '\r') {
+      line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+    }
+  }
+  return line;
+}
 
 std::string alignedTable(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;

@@ -117,6 +117,13 @@ TEST(SummaryTable, ARefusalIsOneSentenceInItsRow) {
               HasSubstr("refused: a point light shines in all directions"));
 }
 
+TEST(SummaryTable, AReasonOfManyLinesIsOneAndCannotPaintTheTerminal) {
+  JobRecord r = record("pcf");
+  r.status = JobStatus::failed;
+  r.reason = "one\ntwo\r\n\x1b[31mred";
+  EXPECT_THAT(lineWith(summaryTable({r}), "pcf"), HasSubstr("failed: one | two | ?[31mred"));
+}
+
 TEST(SummaryTable, EachSceneAndLightHasItsOwnTable) {
   JobRecord second = record("pcf");
   second.light = 1;

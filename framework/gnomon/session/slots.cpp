@@ -112,6 +112,7 @@ std::unique_ptr<SlotState> Session::State::makeSlot(const OpenTechnique& techniq
     slot->parameters = technique.entry->makeParameters();
     copyValues(*technique.entry->parameters, slot->parameters.get(), parameters);
     slot->technique = technique.entry->create(slot->parameters.get());
+    if (!slot->technique) throw Error(fmt::format("its entry '{}' made no technique", technique.entry->name));
     if (plan.has(Rule::receivers)) {
       setUpTechnique(*slot, technique);
     } else {

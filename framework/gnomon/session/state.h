@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <cfenv>
 
 #include <span>
 #include <utility>
@@ -132,11 +133,16 @@ struct Session::State {
 gl::ShaderSources frameworkShaders();
 
 /// Runs code of a plugin. Whatever it throws is copied into an Error that names it; what OpenGL said of it, and state that it
-/// left, end with it.
+/// left, end with it: OpenGL's, and how the processor rounds.
 template <class Work>
 decltype(auto) Session::State::guarded(const std::string& technique, const Work& work) {
   struct Restored {
-    ~Restored() { gl::restoreState(); }
+    std::fenv_t arithmetic;
+    Restored() { std::fegetenv(&arithmetic); }
+    ~Restored() {
+      std::fesetenv(&arithmetic);
+      gl::restoreState();
+    }
   } const restored;
   std::string message;
   try {

@@ -90,7 +90,7 @@ class Misconduct final : public Technique {
     if (misdeed == Misdeed::writesTwo) v.back() = 2.0f;
     if (misdeed == Misdeed::darkAtTheEnd && level == 1.0f) v.front() = -1.0f;
     if (misdeed == Misdeed::darkWhenNarrow && frame.outputSize.x == 1) v.front() = -1.0f;
-    if (misdeed == Misdeed::leavesState) glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
+    if (misdeed == Misdeed::leavesState) glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     if (misdeed == Misdeed::leaksTextures) {
       GLuint name = 0;
       glCreateTextures(GL_TEXTURE_2D, 1, &name);

@@ -1,6 +1,10 @@
 // One technique that breaks the contract in the way its parameter says, and keeps it when that is `none`.
 #include <epoxy/gl.h>
 #include <gnomon/plugin.h>
+#include <array>
+#include <cfenv>
+#include <cstddef>
+#include <memory>
 
 #include <limits>
 
@@ -39,6 +43,11 @@ enum class Fault : int {
   notANumber,
   visibilityOfTwo,
   leavesState,
+  leavesConditional,
+  leavesFeedback,
+  leavesRounding,
+  noTechnique,
+  writesForeignBuffers,
   undeclaredDefence,
   tooLarge
 };
@@ -72,6 +81,11 @@ const std::vector<std::string> kFaults{"none",
                                        "not_a_number",
                                        "visibility_of_two",
                                        "leaves_state",
+                                       "leaves_conditional",
+                                       "leaves_feedback",
+                                       "leaves_rounding",
+                                       "no_technique",
+                                       "writes_foreign_buffers",
                                        "undeclared_defence",
                                        "too_large"};
 
@@ -81,6 +95,34 @@ struct Parameters {
 
 ParameterTable<Parameters> parameterTable() {
   return {choice("fault", &Parameters::fault, kFaults, Binding::structure, "how the contract is broken")};
+}
+
+/// What is drawn from here on is dropped: no sample passed.
+void leaveConditional() {
+  GLuint query = 0;
+  glCreateQueries(GL_ANY_SAMPLES_PASSED, 1, &query);
+  glBeginQuery(GL_ANY_SAMPLES_PASSED, query);
+  glEndQuery(GL_ANY_SAMPLES_PASSED);
+  glBeginConditionalRender(query, GL_QUERY_WAIT);
+}
+
+/// No other program may be used from here on.
+void leaveFeedback() {
+  const char* source = "#version 450\nout float a;\nvoid main() { a = 1.0; gl_Position = vec4(0.0); }\n";
+  const char* varying = "a";
+  const GLuint shader = glCreateShader(GL_VERTEX_SHADER);
+  glShaderSource(shader, 1, &source, nullptr);
+  glCompileShader(shader);
+  const GLuint program = glCreateProgram();
+  glAttachShader(program, shader);
+  glTransformFeedbackVaryings(program, 1, &varying, GL_INTERLEAVED_ATTRIBS);
+  glLinkProgram(program);
+  glUseProgram(program);
+  GLuint buffer = 0;
+  glCreateBuffers(1, &buffer);
+  glNamedBufferStorage(buffer, 64, nullptr, 0);
+  glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
+  glBeginTransformFeedback(GL_TRIANGLES);
 }
 
 /// All that a drawing, clearing or reading framework might take for granted.
@@ -106,6 +148,24 @@ void leaveState() {
   glPolygonOffset(100.0f, 100.0f);
   glPolygonMode(GL_FRONT_AND_BACK, GL_POINT);
   glEnable(GL_RASTERIZER_DISCARD);
+  glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
+  glPatchParameteri(GL_PATCH_VERTICES, 7);
+  glPrimitiveRestartIndex(1);
+  glEnable(GL_PRIMITIVE_RESTART);
+  glEnable(GL_PRIMITIVE_RESTART_FIXED_INDEX);
+  glSampleMaski(0, 0);
+  glEnable(GL_SAMPLE_MASK);
+  glEnable(GL_CLIP_DISTANCE0);
+  glEnable(GL_COLOR_LOGIC_OP);
+  glLogicOp(GL_CLEAR);
+  glBlendEquationSeparate(GL_MIN, GL_MAX);
+  glScissorIndexed(0, 0, 0, 1, 1);
+  glDepthRangeIndexed(0, 0.3, 0.4);
+  glDisable(GL_DITHER);
+  glDisable(GL_MULTISAMPLE);
+  glReadBuffer(GL_NONE);
+  glPixelStorei(GL_PACK_SWAP_BYTES, GL_TRUE);
+  glPixelStorei(GL_UNPACK_SWAP_BYTES, GL_TRUE);
   glPixelStorei(GL_PACK_ALIGNMENT, 8);
   glPixelStorei(GL_PACK_ROW_LENGTH, 7);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
@@ -125,12 +185,14 @@ class Mischief final : public Technique {
 
   Support support(const SceneSurvey& /*survey*/, const Light& /*light*/, const Frame& /*frame*/) const override {
     if (fault_ == Fault::throwInSupport) throw Error("thrown in support");
+    if (fault_ == Fault::leavesState) leaveState();
     if (fault_ == Fault::refuse) return Support::refused("it was asked to refuse");
     return {};
   }
 
   Outputs setup(GraphBuilder& graph, const Frame& frame, const EffectPlan& /*plan*/) override {
     const TextureInfo info{frame.size, Format::r32f};
+    if (fault_ == Fault::leavesState) leaveState();
     switch (fault_) {
       case Fault::throwInSetup:
         throw std::runtime_error("thrown in setup");
@@ -177,8 +239,11 @@ class Mischief final : public Technique {
     }
   }
 
-  void update(const FrameInputs& /*inputs*/, UniformWriter& /*writer*/) override {
+  void update(const FrameInputs& /*inputs*/, UniformWriter& writer) override {
     if (fault_ == Fault::throwInUpdate) throw Error("thrown in update");
+    constexpr std::array<std::byte, 16> kZeros{};
+    if (fault_ != Fault::writesForeignBuffers) return;
+    for (int i = 0;; ++i) writer.write(Buffer{i}, kZeros);  // its own, then what it shares with others
   }
 
  private:
@@ -198,6 +263,9 @@ class Mischief final : public Technique {
                          if (fault == Fault::notANumber) lit.back() = std::numeric_limits<float>::quiet_NaN();
                          if (fault == Fault::visibilityOfTwo) lit.front() = 2.0f;
                          if (fault == Fault::leavesState) leaveState();
+                         if (fault == Fault::leavesConditional) leaveConditional();
+                         if (fault == Fault::leavesFeedback) leaveFeedback();
+                         if (fault == Fault::leavesRounding) std::fesetround(FE_UPWARD);
                          context.write(target, lit);
                        }});
     return target;
@@ -206,7 +274,16 @@ class Mischief final : public Technique {
   Fault fault_;
 };
 
+Entry mischief() {
+  Entry made = entry<Mischief>("mischief", parameterTable(), {});
+  made.create = [create = made.create](const void* parameters) {
+    const bool none = static_cast<const Parameters*>(parameters)->fault == Fault::noTechnique;
+    return none ? std::unique_ptr<Technique>() : create(parameters);
+  };
+  return made;
+}
+
 }  // namespace
 }  // namespace gnomon
 
-GNOMON_PLUGIN(gnomon::entry<gnomon::Mischief>("mischief", gnomon::parameterTable(), {}))
+GNOMON_PLUGIN(gnomon::mischief())
