@@ -128,6 +128,17 @@ TEST(Validate, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(gnomonProgram({"validate", file}).exitCode, 2);
 }
 
+TEST(Validate, SaysWhatAFileOfNoKindLacks) {
+  const TemporaryFolder folder;
+  for (const char* text : {"{}", "[]", "3"}) {
+    const Outcome outcome = gnomonProgram({"validate", folder.write("x.json", text).string()});
+    EXPECT_EQ(outcome.exitCode, 2) << text;
+    EXPECT_THAT(outcome.err, HasSubstr("neither a run config (.json with scene and techniques), nor a technique file")) << text;
+  }
+  const Outcome components = gnomonProgram({"validate", folder.write("x.json", R"({"components": {}})").string()});
+  EXPECT_THAT(components.err, HasSubstr("/components")) << "a technique file";
+}
+
 TEST(Json, OfEveryCommandThatOffersItIsJson) {
   const TemporaryFolder folder;
   const std::string config = folder.write("run.json", smallConfig()).string();

@@ -31,10 +31,13 @@ FileKind kindOf(const std::filesystem::path& file) {
   if (extension == ".glb" || extension == ".gltf") return FileKind::gltf;
   if (extension != ".json") return FileKind::unknown;
   const Json json = Json::parse(readFile(file), nullptr, false);
+  const auto has = [&](const char* key) { return json.contains(key); };
+  // What cannot be parsed is told with its place by the reader of run configs.
+  if (!json.is_discarded() && !has("scene") && !has("techniques") && !has("library") && !has("components"))
+    return FileKind::unknown;
   // Only a technique file has an object of techniques; a run config has a list.
-  return json.is_object() && (json.contains("library") || (json.contains("techniques") && json["techniques"].is_object()))
-             ? FileKind::techniqueFile
-             : FileKind::runConfig;
+  const bool named = has("techniques") && json["techniques"].is_object();
+  return named || has("library") || has("components") ? FileKind::techniqueFile : FileKind::runConfig;
 }
 
 /// Beside the other files of its folder and of the technique directories, as a program would see it.
@@ -142,7 +145,10 @@ int validateCommand(const CommonOptions& common, const std::vector<std::filesyst
           for (const std::string& warning : loadGltf(file).warnings) log::warning(file.string() + ": " + warning);
           break;
         case FileKind::unknown:
-          problems.add(file.string(), "", "is neither JSON (run config, technique file) nor glTF (.gltf, .glb)");
+          problems.add(file.string(), "",
+                       "is neither a run config (.json with scene and techniques), nor a technique file (.json with library, "
+                       "techniques or "
+                       "components), nor glTF (.gltf, .glb)");
           break;
       }
     } catch (const InputError& error) {
