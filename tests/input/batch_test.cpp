@@ -157,7 +157,6 @@ TEST_F(Batch, WhatWasNotMeasuredIsNull) {
   EXPECT_TRUE(record["reason"].is_null());
   EXPECT_TRUE(record["time"]["regimes"]["static"]["ratio"].is_null()) << "a ratio of two nothings";
   EXPECT_TRUE(record["work"]["texel_reads"].is_null()) << "no instrumented build yet";
-  EXPECT_TRUE(record["work"]["fragments"].is_null());
 }
 
 TEST_F(Batch, RenderMeasuresNoTime) {

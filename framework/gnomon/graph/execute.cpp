@@ -26,6 +26,37 @@ class DebugGroup {
   DebugGroup& operator=(const DebugGroup&) = delete;
 };
 
+/// Counts the samples that pass, if it is to. (Pipeline statistics of fragment shaders are wrong on software renderers.)
+class SampleCount {
+ public:
+  explicit SampleCount(bool counts) {
+    if (!counts) return;
+    query_ = gl::makeQuery(GL_SAMPLES_PASSED);
+    glBeginQuery(GL_SAMPLES_PASSED, query_.name());
+  }
+  ~SampleCount() { end(); }
+  SampleCount(const SampleCount&) = delete;
+  SampleCount& operator=(const SampleCount&) = delete;
+
+  /// Waits for it; none where it was not to count.
+  std::optional<std::uint64_t> finished() {
+    if (!query_) return std::nullopt;
+    end();
+    GLuint64 passed = 0;
+    glGetQueryObjectui64v(query_.name(), GL_QUERY_RESULT, &passed);
+    return passed;
+  }
+
+ private:
+  void end() {
+    if (query_ && counting_) glEndQuery(GL_SAMPLES_PASSED);
+    counting_ = false;
+  }
+
+  gl::QueryObject query_;
+  bool counting_ = true;
+};
+
 template <class Handles, class Handle>
 bool contains(const Handles& handles, Handle handle) {
   return std::find(handles.begin(), handles.end(), handle) != handles.end();
@@ -37,6 +68,8 @@ void GraphExecution::execute() {
   s_.report.counters = {};
   for (PassReport& pass : s_.report.passes) {
     pass.ran = false;
+    pass.work = {};
+    pass.fragments.reset();
     pass.cpuMs = pass.wallMs = 0.0;
   }
   for (PassNode& node : s_.passes) {
@@ -217,9 +250,13 @@ void GraphExecution::runTimed(PassNode& node) {
   node_ = &node;
   const double cpu = options_.timePasses ? processCpuMs() : 0.0;
   const double wall = options_.timePasses ? wallMs() : 0.0;
+  const FrameCounters before = s_.report.counters;
+  const bool draws = std::holds_alternative<RasterPass>(node.kind) || std::holds_alternative<FullscreenPass>(node.kind);
   try {
     const DebugGroup group(node.name);
+    SampleCount samples(options_.countFragments && draws);
     std::visit([&](const auto& kind) { perform(node, kind); }, node.kind);
+    if (const auto passed = samples.finished()) report.fragments = report.fragments.value_or(0) + *passed;
     for (const Target& written : node.writes) s_.texture(written.texture).object.hold(&s_.texture(written.texture));
     if (options_.messages != nullptr) options_.messages->throwIfError("while it ran");
     if (options_.checkFinite) {
@@ -232,6 +269,7 @@ void GraphExecution::runTimed(PassNode& node) {
     forget(node);
     throw Error(fmt::format("pass '{}': it threw something that is no std::exception", node.name));
   }
+  report.work += s_.report.counters - before;
   if (options_.timePasses) {
     glFinish();
     report.cpuMs += processCpuMs() - cpu;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -61,6 +62,9 @@ struct PassReport {
   double cpuMs = 0.0;  ///< process CPU time with a finish after the pass; only
                        ///< where asked for
   double wallMs = 0.0;
+  FrameCounters work = {};  ///< its part of the frame's counters
+  std::optional<std::uint64_t> fragments =
+      std::nullopt;  ///< samples that passed, where asked for; none for compute and the CPU
 };
 
 struct GraphReport {
@@ -71,6 +75,7 @@ struct GraphReport {
 struct GraphRun {
   bool skipUnchanged = true;              ///< the plan's rule `skipping`
   bool timePasses = false;                ///< finish and time after each pass
+  bool countFragments = false;            ///< by a query around each pass that draws
   bool checkFinite = false;               ///< throw at the first non-finite texel of a target
   gl::DebugMessages* messages = nullptr;  ///< where the driver's errors are looked up after each pass
 };

@@ -63,4 +63,23 @@ double largestBias(const Facts& facts, double depth, double cosTheta, double toC
          facts.biasNormal * widest;
 }
 
+FrameCounters& FrameCounters::operator+=(const FrameCounters& other) {
+  passesRun += other.passesRun;
+  passesSkipped += other.passesSkipped;
+  draws += other.draws;
+  primitives += other.primitives;
+  texelsWritten += other.texelsWritten;
+  rays += other.rays;
+  return *this;
+}
+
+FrameCounters FrameCounters::operator-(const FrameCounters& earlier) const {
+  return {.passesRun = passesRun - earlier.passesRun,
+          .passesSkipped = passesSkipped - earlier.passesSkipped,
+          .draws = draws - earlier.draws,
+          .primitives = primitives - earlier.primitives,
+          .texelsWritten = texelsWritten - earlier.texelsWritten,
+          .rays = rays - earlier.rays};
+}
+
 }  // namespace gnomon

@@ -102,6 +102,9 @@ struct FrameCounters {
   std::uint64_t primitives = 0;     ///< triangles submitted by raster passes
   std::uint64_t texelsWritten = 0;  ///< by full-screen and cpu passes; raster passes by their target's size
   std::uint64_t rays = 0;
+
+  FrameCounters& operator+=(const FrameCounters& other);
+  FrameCounters operator-(const FrameCounters& earlier) const;
 };
 
 /// What a technique claims of its own precision, from which bounds on its error are derived (stability suite, docs).

@@ -10,6 +10,7 @@
 #include "gnomon/base/files.h"
 #include "gnomon/measure/error.h"
 #include "gnomon/run/job_time.h"
+#include "gnomon/run/job_work.h"
 #include "gnomon/run/pictures.h"
 
 namespace gnomon {
@@ -60,13 +61,6 @@ struct LightRun::State : LightStage {
     });
     record.reason = impossibleValues(visibility);
     record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
-    const FrameCounters& c = frame.technique.counters;
-    record.work.passesRun = c.passesRun;
-    record.work.passesSkipped = c.passesSkipped;
-    record.work.draws = c.draws;
-    record.work.primitives = c.primitives;
-    record.work.texelsWritten = c.texelsWritten;
-    record.work.rays = c.rays;
     record.memoryBytes = session.memoryBytes(slot);
     if (!options.imageDirectory.empty()) {
       const TraceSlice slice(options.trace, "pictures");
@@ -75,6 +69,7 @@ struct LightRun::State : LightStage {
                     {shaded, visibility, reference.halves, receivers.mask, classes, receivers.positions, receivers.normals},
                     session);
     }
+    record.work = traced("work", [&] { return measureWork(*this, slot, frame.technique.counters); });
     if (options.clock) {
       const Slot baseline =
           traced("baseline's set-up", [&] { return session.addSlot(run.baseline.technique, run.baseline.parameters); });

@@ -38,14 +38,7 @@ void JoinedReport::clear() {
 }
 
 void JoinedReport::add(const GraphReport& report) {
-  FrameCounters& all = report_.counters;
-  const FrameCounters& more = report.counters;
-  all.passesRun += more.passesRun;
-  all.passesSkipped += more.passesSkipped;
-  all.draws += more.draws;
-  all.primitives += more.primitives;
-  all.texelsWritten += more.texelsWritten;
-  all.rays += more.rays;
+  report_.counters += report.counters;
   if (report_.passes.size() < passes_ + report.passes.size()) report_.passes.resize(passes_ + report.passes.size());
   for (const PassReport& pass : report.passes) report_.passes[passes_++] = pass;
 }
