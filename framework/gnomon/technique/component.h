@@ -2,7 +2,8 @@
 // the three, and a technique file composes them under a name ("compose").
 //
 // In GLSL they meet in the footprint's shader:
-//   #include "projection"         MapPoint mapPoint(); mapRange(), mapMetres() and the sampler depthMap
+//   #include "projection"         MapPoint mapPoint(); mapRange(), mapMetres(), the samplers depthMap and, to store
+//                                     what is averaged, averagedMap
 //   #include "representation"     either  #define COMPARES  and  float tapVisibility(MapPoint, vec2 uv),
 //                                 or  #define Stored TYPE,  Stored storedOf(vec4 texel),  vec4 texelOf(Stored),
 //                                     Stored combine(Stored a, Stored b, float share)  the mean in which b has that share,
