@@ -63,8 +63,8 @@ struct PassReport {
                        ///< where asked for
   double wallMs = 0.0;
   FrameCounters work = {};  ///< its part of the frame's counters
-  std::optional<std::uint64_t> fragments =
-      std::nullopt;  ///< samples that passed, where asked for; none for compute and the CPU
+  /// Samples that passed, where asked for; none for compute and the CPU.
+  std::optional<std::uint64_t> fragments = std::nullopt;
 };
 
 struct GraphReport {

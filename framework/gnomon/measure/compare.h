@@ -22,7 +22,7 @@ std::string changeName(Change change);
 
 /// One figure of one job. Of every figure that is compared, less is better.
 struct FigureChange {
-  std::string figure;  ///< its path in a record: "error.rmse", "time.dynamic.median_ms"
+  std::string figure;  ///< its path in a record: "error.mse", "time.dynamic.median_ms"
   std::optional<double> before;
   std::optional<double> after;
   Change change = Change::same;

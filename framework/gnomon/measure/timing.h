@@ -72,8 +72,8 @@ struct TimingFigures {
   std::optional<Interval> ci95Ms = {};  ///< of the median
   std::optional<double> p95Ms = {};
   std::optional<int> n = {};
-  std::optional<double> ratio =
-      {};  ///< median over pairs of (A1+A2)/(B1+B2); none where a baseline pair took no time by this clock
+  /// Median over pairs of (A1+A2)/(B1+B2); none where a baseline pair took no time by this clock.
+  std::optional<double> ratio = {};
   std::optional<Interval> ratioCi95 = {};
   std::vector<TimedPair> pairs = {};
 
