@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "bench.h"
+#include "gnomon/run/light_run.h"
 
 namespace gnomon::test {
 namespace {
@@ -69,6 +70,14 @@ TEST_F(Work, WhatIsSkippedDidNothing) {
   const PassReport& depth = passOf(counted(true), "light depth");
   EXPECT_FALSE(depth.fragments.has_value());
   EXPECT_EQ(depth.work.primitives, 0U);
+}
+
+TEST_F(Work, AStepOfTheDynamicRegimeDrawsTheDepthMap) {  // so a shadow map's headline time includes it
+  session_.moveLight(lightAtPose(session_.light(), 1, 12));
+  session_.runShared();
+  const PassReport& depth = passOf(counted(true), "light depth");
+  EXPECT_TRUE(depth.ran);
+  EXPECT_GT(depth.work.primitives, 100U);
 }
 
 TEST_F(Work, CountingLeavesThePictureAsItIs) {

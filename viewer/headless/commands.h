@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "gnomon/measure/clocks.h"
+
 namespace gnomon {
 
 /// Options that every command takes.
@@ -24,6 +26,9 @@ struct RenderOptions {
   bool exr = true;
   bool checkFinite = false;
   bool measureTime = true;
+  bool timesOnly = false;
+  std::string timer = "auto";             ///< or a clock's name
+  int repeat = 1;                         ///< processes that times are measured by
   std::string shard;                      ///< "i/n"
   std::vector<std::string> without = {};  ///< defences to switch off, besides those of the configs
 };
@@ -44,7 +49,8 @@ struct CheckOptions {
 struct CompareOptions {
   std::filesystem::path before;  ///< a folder of results, or a results file
   std::filesystem::path after;
-  bool all = false;  ///< also what did not change
+  bool all = false;   ///< also what did not change
+  bool same = false;  ///< nothing was changed between the two: any difference is a fault of the measuring
 };
 
 int listCommand(const CommonOptions& common);
@@ -56,7 +62,10 @@ int planCommand(const CommonOptions& common, const std::filesystem::path& config
 int renderCommand(const CommonOptions& common, const RenderOptions& options);
 int stabilityCommand(const CommonOptions& common, const StabilityOptions& options);
 int checkCommand(const CommonOptions& common, const CheckOptions& options);
-/// 1 where anything got worse.
+/// Runs the batch of `options` in repeat - 1 further processes, each after the last, that measure times alone, by `timer`. The
+/// folders that they wrote; one that fails costs a warning.
+std::vector<std::filesystem::path> runRepeats(const CommonOptions& common, const RenderOptions& options, Clock timer);
+/// 1 where anything got worse, or, of what should be the same, where anything differs.
 int compareCommand(const CommonOptions& common, const CompareOptions& options);
 /// Writes the folder `in`/`name`.
 int newTechniqueCommand(const CommonOptions& common, const std::string& name, const std::filesystem::path& in);

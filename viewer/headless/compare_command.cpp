@@ -127,7 +127,7 @@ int compareCommand(const CommonOptions& common, const CompareOptions& options) {
   } else {
     print(comparison, options.all);
   }
-  return comparison.anyWorse() ? 1 : 0;
+  return comparison.anyWorse() || (options.same && comparison.count(Change::better) > 0) ? 1 : 0;
 }
 
 }  // namespace gnomon

@@ -104,6 +104,11 @@ int run(int argc, char** argv) {
   batch->add_option("--out", render.out, "folder for pictures and results")->required();
   batch->add_flag("--resume", render.resume, "keep the results that are there and run what is missing");
   batch->add_option("--shard", render.shard, "i/n: take every n-th job, from the i-th (0-based)");
+  batch->add_option("--timer", render.timer, "the clock of the times; auto takes one that proves itself on this machine")
+      ->check(CLI::IsMember({"auto", "gpu", "cpu", "wall"}));
+  batch->add_option("--repeat", render.repeat, "measure times in this many processes, one after the other")
+      ->check(CLI::Range(1, 100));
+  batch->add_flag("--times-only", render.timesOnly, "no reference, errors or pictures")->excludes("--repeat");
   batch->callback([&] { exitCode = renderCommand(common, render); });
 
   CLI::App* hard = app.add_subcommand("stability", "techniques through the hard cases: pass, refused or fail, with figures");
@@ -121,8 +126,9 @@ int run(int argc, char** argv) {
   comparing->add_option("before", compare.before, "folder that a batch wrote before the change")->required();
   comparing->add_option("after", compare.after, "folder that one wrote after it")->required();
   comparing->add_flag("--all", compare.all, "also what did not change");
+  comparing->add_flag("--same", compare.same, "two runs of one batch: whatever differs beyond its interval is a fault");
   comparing->add_flag("--json", common.json, "for programs");
-  comparing->footer("Exit codes: 0 nothing is worse, 1 something is, 2 bad usage or input.");
+  comparing->footer("Exit codes: 0 nothing is worse (with --same: nothing differs), 1 something is, 2 bad usage or input.");
   comparing->callback([&] { exitCode = compareCommand(common, compare); });
 
   CLI::App* starting = app.add_subcommand("new-technique", "writes a plugin that builds and runs, with one test to fill in");

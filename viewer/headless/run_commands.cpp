@@ -14,6 +14,7 @@
 #include "gnomon/base/log.h"
 #include "gnomon/gl/context.h"
 #include "gnomon/run/batch.h"
+#include "gnomon/run/repeats.h"
 #include "gnomon/run/summary.h"
 #include "tools.h"
 
@@ -107,6 +108,8 @@ int renderCommand(const CommonOptions& common, const RenderOptions& options) {
   BatchOptions how{.out = options.out,
                    .resume = options.resume,
                    .measureTime = options.measureTime,
+                   .timesOnly = options.timesOnly,
+                   .timer = clockFromName(options.timer),
                    .exr = options.exr,
                    .checkFinite = options.checkFinite};
   readShard(options.shard, how);
@@ -132,7 +135,8 @@ int renderCommand(const CommonOptions& common, const RenderOptions& options) {
 
   const gl::HeadlessContext context({common.gpu, common.debug});
   log::info("renderer: " + gl::currentContextInfo().renderer);
-  const BatchSummary summary = runBatch(runs, registry, how, ProgressLine{});
+  BatchSummary summary = runBatch(runs, registry, how, ProgressLine{});
+  if (needsRepeats(summary, options.repeat)) mergeRepeats(summary, runRepeats(common, options, *summary.clock));
   fmt::print("{}\n", summaryTable(summary.records));
   if (summary.kept > 0) fmt::print("{} of {} results were there already\n", summary.kept, summary.records.size());
   printLightsPictures(summary.lightsPictures);

@@ -143,33 +143,62 @@ double percentile(std::span<const double> values, double percent) {
 
 std::optional<Interval> bootstrapInterval(std::span<const std::vector<double>> groups, const Statistic& statistic,
                                           const BootstrapPlan& plan) {
+  const GroupedValues single(groups.begin(), groups.end());
+  return bootstrapInterval(std::span(&single, 1), statistic, plan);
+}
+
+std::optional<Interval> bootstrapInterval(std::span<const GroupedValues> repeats, const Statistic& statistic,
+                                          const BootstrapPlan& plan) {
   if (plan.resamples < 1 || !(plan.confidence > 0.0 && plan.confidence < 1.0)) {
     throw Error("bootstrap: needs at least one resample and a confidence between 0 and 1");
   }
-  std::vector<std::span<const double>> drawable;
+  using Groups = std::vector<std::span<const double>>;
+  std::vector<Groups> drawable;
   std::size_t count = 0;
-  for (const std::vector<double>& group : groups) {
-    if (!group.empty()) drawable.emplace_back(group);
-    count += group.size();
+  for (const GroupedValues& repeat : repeats) {
+    Groups groups;
+    for (const std::vector<double>& group : repeat) {
+      if (!group.empty()) groups.emplace_back(group);
+      count += group.size();
+    }
+    if (!groups.empty()) drawable.push_back(std::move(groups));
   }
   if (count < 2) return std::nullopt;
 
   RandomStream random(plan.seed);
+  const auto drawn = [&random](const auto& all) -> const auto& {
+    return all.size() == 1 ? all[0] : all[random.below(all.size())];
+  };
   std::vector<double> sample;
   std::vector<double> figures;
   figures.reserve(static_cast<std::size_t>(plan.resamples));
   for (int i = 0; i < plan.resamples; ++i) {
     sample.clear();
-    for (std::size_t g = 0; g < drawable.size(); ++g) {
-      const std::span<const double> group = drawable[random.below(drawable.size())];
-      for (std::size_t v = 0; v < group.size(); ++v) sample.push_back(group[random.below(group.size())]);
+    for (std::size_t r = 0; r < drawable.size(); ++r) {
+      const Groups& groups = drawn(drawable);
+      for (std::size_t g = 0; g < groups.size(); ++g) {
+        const std::span<const double> group = drawn(groups);
+        for (std::size_t v = 0; v < group.size(); ++v) sample.push_back(drawn(group));
+      }
     }
     figures.push_back(statistic(sample));
   }
   std::sort(figures.begin(), figures.end());
 
-  const double units = static_cast<double>(drawable.size() > 1 ? drawable.size() : count);
-  const double tail = normalCdf(-normalQuantile(0.5 + 0.5 * plan.confidence) * std::sqrt(units / (units - 1.0)));
+  const std::size_t outermost = drawable.size() > 1 ? drawable.size() : drawable[0].size() > 1 ? drawable[0].size() : count;
+  const double units = static_cast<double>(outermost);
+  const double probability = 0.5 + 0.5 * plan.confidence;
+  const double widening = std::sqrt(units / (units - 1.0));
+  if (drawable.size() > 1) {  // resamples of a few repeats never leave their range: no percentile of them could
+    std::vector<double> all;
+    for (const Groups& groups : drawable) {
+      for (const std::span<const double> group : groups) all.insert(all.end(), group.begin(), group.end());
+    }
+    const double centre = statistic(all);
+    const double reach = studentTQuantile(probability, units - 1.0) * widening * std::sqrt(variance(figures));
+    return Interval{centre - reach, centre + reach};
+  }
+  const double tail = normalCdf(-normalQuantile(probability) * widening);
   return Interval{percentileOfSorted(figures, 100.0 * tail), percentileOfSorted(figures, 100.0 * (1.0 - tail))};
 }
 

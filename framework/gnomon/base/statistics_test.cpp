@@ -137,5 +137,35 @@ TEST(Bootstrap, CoversTheMeanWhenGroupsShareTheirLuck) {
   EXPECT_GE(covered, 165);  // normal percentiles of 6 groups: P(|t_5| < 1.96) = 89 %, 178; 165 is 3 sigma below
 }
 
+/// Of 200 sets of values in which only repeats differ truly, those whose interval holds the mean.
+int coveredByRepeats(std::size_t repeats, bool areKnown) {
+  RandomStream random(22);
+  int covered = 0;
+  for (int repetition = 0; repetition < 200; ++repetition) {
+    std::vector<GroupedValues> values(repeats, GroupedValues(3));
+    for (GroupedValues& repeat : values) {
+      const double shared = random.normal();
+      for (std::vector<double>& group : repeat) {
+        for (int i = 0; i < 4; ++i) group.push_back(shared + 0.1 * random.normal());
+      }
+    }
+    GroupedValues pooled;
+    for (const GroupedValues& repeat : values) pooled.insert(pooled.end(), repeat.begin(), repeat.end());
+    const Statistic average = [](std::span<double> all) { return mean(all); };
+    const auto interval = areKnown ? bootstrapInterval(values, average, {.resamples = 500})
+                                   : bootstrapInterval(pooled, average, {.resamples = 500});
+    covered += interval->contains(0.0) ? 1 : 0;
+  }
+  return covered;
+}
+
+TEST(Bootstrap, CoversTheMeanWhenRepeatsShareTheirLuck) {
+  EXPECT_GE(coveredByRepeats(4, true), 181);  // 95 % is 190; 3 sigma below
+}
+
+TEST(Bootstrap, CoversLessWhenRepeatsAreTakenForBlocks) {  // else the level above would not be needed
+  EXPECT_LE(coveredByRepeats(4, false), 150);
+}
+
 }  // namespace
 }  // namespace gnomon

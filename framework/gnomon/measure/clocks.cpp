@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "gnomon/base/error.h"
 #include "gnomon/base/statistics.h"
 
 namespace gnomon {
@@ -99,6 +100,15 @@ ClockChoice chooseClock(std::span<const ClockTrial> trials) {
                                     notGpu, 100.0 * medianCpuShare(trials))};
   }
   return {Clock::wall, fmt::format("wall: {}; {}", notGpu, notCpu)};
+}
+
+ClockChoice provenClock(std::span<const ClockTrial> trials, Clock wanted) {
+  if (wanted == Clock::wall) return {wanted, "wall: asked for"};
+  std::string against = whyNoProof(trials);
+  if (against.empty()) against = wanted == Clock::gpu ? whyNotGpu(trials) : whyNotCpu(trials);
+  if (against.empty()) return {wanted, clockName(wanted) + ": asked for, and its trials bear it out"};
+  throw Error(fmt::format("timer '{}' is not to be believed here: {}; leave the timer open to take one that proves itself",
+                          clockName(wanted), against));
 }
 
 Clock clockForPair(Clock chosen, CpuPasses candidate, CpuPasses baseline) {

@@ -46,6 +46,10 @@ inline constexpr double kLeastCpuShare = 0.2;
 /// scales; else wall. Never throws: trials that prove nothing leave the wall clock, and the reason says why.
 ClockChoice chooseClock(std::span<const ClockTrial> trials);
 
+/// `wanted`, where the trials bear it out as chooseClock asks; the wall clock needs no proof. Else throws Error with the
+/// numbers that speak against it.
+ClockChoice provenClock(std::span<const ClockTrial> trials, Clock wanted);
+
 /// Whether a technique has passes on the CPU.
 enum class CpuPasses { none, some };
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "gnomon/base/error.h"
+
 namespace gnomon {
 namespace {
 
@@ -92,6 +94,23 @@ TEST(ChooseClock, TrialsOfOneSizeProveNothing) {
 
 TEST(ChooseClock, NoTrialsLeaveTheWall) {
   EXPECT_EQ(chooseClock({}).clock, Clock::wall);
+}
+
+TEST(ProvenClock, OneThatIsBorneOutIsTaken) {
+  EXPECT_EQ(provenClock(trials(0.97, 1.0), Clock::gpu).clock, Clock::gpu);
+  EXPECT_EQ(provenClock(trials(0.01, 1.9), Clock::cpu).clock, Clock::cpu);
+  EXPECT_EQ(provenClock({}, Clock::wall).clock, Clock::wall);
+}
+
+TEST(ProvenClock, OneThatLiesIsRefusedWithTheNumbers) {
+  try {
+    provenClock(trials(0.01, 1.9), Clock::gpu);
+    FAIL() << "was believed";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("0.1 ms where the finished wall clock shows 10 ms"), std::string::npos);
+  }
+  EXPECT_THROW(provenClock(trials(0.97, 0.02), Clock::cpu), Error);
+  EXPECT_THROW(provenClock({}, Clock::gpu), Error);
 }
 
 TEST(ClockForPair, CpuPassesNeedAClockThatSeesThem) {

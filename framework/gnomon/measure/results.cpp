@@ -303,6 +303,10 @@ class Reader {
   static void read(const OrderedJson& json, std::vector<T>& list) {
     for (const OrderedJson& element : json) read(element, list.emplace_back());
   }
+  template <typename T, std::size_t N>
+  static void read(const OrderedJson& json, std::array<T, N>& list) {
+    for (std::size_t i = 0; i < N; ++i) read(json.at(i), list[i]);
+  }
   template <typename T>
   static void read(const OrderedJson& json, std::map<std::string, T>& map) {
     if (!json.is_object()) throw Error("expected an object");
@@ -388,6 +392,12 @@ std::string timingPairsJson(const TimeRecord& time) {
     regimes[name] = Writer::json(pairs);
   }
   return dumped({{"regimes", regimes}});
+}
+
+std::map<std::string, std::vector<TimedPair>> parseTimingPairs(std::string_view text) {
+  std::map<std::string, std::vector<TimedPair>> regimes;
+  Reader::read(OrderedJson::parse(text).at("regimes"), regimes);
+  return regimes;
 }
 
 ParsedResults parseResults(std::string_view text, const std::string& name) {

@@ -122,6 +122,8 @@ std::string toJsonLine(const JobRecord& record);
 
 /// The raw pairs of every regime, for the record's side file.
 std::string timingPairsJson(const TimeRecord& time);
+/// The reverse. Throws on text that timingPairsJson did not write.
+std::map<std::string, std::vector<TimedPair>> parseTimingPairs(std::string_view text);
 
 struct ParsedResults {
   std::vector<JobRecord> records;     ///< in the order in which jobs first appear; of a repeated job the last record

@@ -247,6 +247,20 @@ TEST(Results, RawPairsGoToTheSideFile) {
   EXPECT_EQ(pair["baseline"][1]["wall_ms"], 9.0);
 }
 
+TEST(Results, RawPairsAreReadBack) {
+  TimeRecord time;
+  time.regimes["dynamic"].pairs = {{1, 2, {{{1.0, 2.0, 3.0}, {4.0, 5.0}}}, {{{6.0, 7.0}, {8.0, 9.0}}}}};
+  time.regimes["static"];
+  const auto read = parseTimingPairs(timingPairsJson(time));
+  EXPECT_EQ(read.size(), 2U);
+  EXPECT_EQ(read.at("dynamic"), time.regimes["dynamic"].pairs);
+}
+
+TEST(Results, ADamagedSideFileIsAnError) {
+  for (const char* text : {"", "{", "[]", "{}", R"({"regimes": {"dynamic": [{"candidate": [{}]}]}})"})
+    EXPECT_ANY_THROW(parseTimingPairs(text)) << text;
+}
+
 class ResultsFolder : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "gnomon/base/clock.h"
 #include "gnomon/base/error.h"
@@ -40,26 +42,45 @@ std::vector<TimedPair> timeBlock(const TimedFrame& frame, int poses, int block) 
   return pairs;
 }
 
-/// (A1+A2)/(B1+B2) of each pair, by block. Empty if any baseline took no time: the clock is too coarse for a ratio.
-std::optional<std::vector<std::vector<double>>> ratiosByBlock(const std::vector<TimedPair>& pairs, const TimingPlan& plan) {
-  std::vector<std::vector<double>> ratios(pairs.size() / static_cast<std::size_t>(plan.poses));
+/// The values of each pair, by block.
+template <class Values>
+GroupedValues byBlock(const std::vector<TimedPair>& pairs, const Values& valuesOf) {
+  std::map<int, std::vector<double>> blocks;
   for (const TimedPair& pair : pairs) {
-    const double candidate = reading(pair.candidate[0], plan.clock) + reading(pair.candidate[1], plan.clock);
-    const double baseline = reading(pair.baseline[0], plan.clock) + reading(pair.baseline[1], plan.clock);
-    if (baseline <= 0.0) return std::nullopt;
-    ratios[static_cast<std::size_t>(pair.block)].push_back(candidate / baseline);
+    std::vector<double>& block = blocks[pair.block];
+    for (const double value : valuesOf(pair)) block.push_back(value);
+  }
+  GroupedValues groups;
+  for (auto& [number, values] : blocks) groups.push_back(std::move(values));
+  return groups;
+}
+
+/// (A1+A2)/(B1+B2); not finite where the baseline took no time: the clock is too coarse for a ratio.
+double ratioOf(const TimedPair& pair, Clock clock) {
+  return (reading(pair.candidate[0], clock) + reading(pair.candidate[1], clock)) /
+         (reading(pair.baseline[0], clock) + reading(pair.baseline[1], clock));
+}
+
+/// By process and block; empty if any is not finite.
+std::vector<GroupedValues> ratiosOf(std::span<const std::vector<TimedPair>> processes, Clock clock) {
+  std::vector<GroupedValues> ratios;
+  for (const std::vector<TimedPair>& pairs : processes) {
+    if (!std::all_of(pairs.begin(), pairs.end(), [&](const TimedPair& pair) { return std::isfinite(ratioOf(pair, clock)); }))
+      return {};
+    ratios.push_back(byBlock(pairs, [&](const TimedPair& pair) { return std::array{ratioOf(pair, clock)}; }));
   }
   return ratios;
 }
 
 std::optional<Interval> ratioInterval(const std::vector<TimedPair>& pairs, const TimingPlan& plan) {
-  const auto ratios = ratiosByBlock(pairs, plan);
-  return ratios ? bootstrapInterval(*ratios, medianInPlace, plan.bootstrap) : std::nullopt;
+  return bootstrapInterval(ratiosOf(std::span(&pairs, 1), plan.clock), medianInPlace, plan.bootstrap);
 }
 
-std::vector<double> flattened(const std::vector<std::vector<double>>& groups) {
+std::vector<double> flattened(std::span<const GroupedValues> repeats) {
   std::vector<double> all;
-  for (const std::vector<double>& group : groups) all.insert(all.end(), group.begin(), group.end());
+  for (const GroupedValues& groups : repeats) {
+    for (const std::vector<double>& group : groups) all.insert(all.end(), group.begin(), group.end());
+  }
   return all;
 }
 
@@ -89,39 +110,47 @@ TimingFigures measurePaired(const TimedFrame& frame, const TimingPlan& plan) {
     }
   }
 
-  TimingFigures figures;
+  std::vector<TimedPair> all;
   const double start = wallMs();
   const auto isEnough = [&] {
     if (plan.halfWidth <= 0.0 || wallMs() - start > 1e3 * plan.seconds) return true;
-    const std::optional<Interval> interval = ratioInterval(figures.pairs, plan);
+    const std::optional<Interval> interval = ratioInterval(all, plan);
     return interval && 0.5 * (interval->high - interval->low) <= plan.halfWidth;
   };
   int blocks = 0;
   while (blocks < plan.blocks || !isEnough()) {
     const int block = blocks++;
     const std::vector<TimedPair> pairs = timeBlock(frame, plan.poses, block);
-    figures.pairs.insert(figures.pairs.end(), pairs.begin(), pairs.end());
+    all.insert(all.end(), pairs.begin(), pairs.end());
   }
+  return timingFigures(std::span(&all, 1), plan.clock, plan.bootstrap);
+}
 
-  std::vector<std::vector<double>> timesByBlock(static_cast<std::size_t>(blocks));
-  std::vector<double> wallTimes;
-  for (const TimedPair& pair : figures.pairs) {
-    for (const FrameTime& time : pair.candidate) {
-      timesByBlock[static_cast<std::size_t>(pair.block)].push_back(reading(time, plan.clock));
-      wallTimes.push_back(reading(time, Clock::wall));
-    }
+TimingFigures timingFigures(std::span<const std::vector<TimedPair>> processes, Clock clock, const BootstrapPlan& plan) {
+  std::vector<GroupedValues> candidate, wall;
+  for (const std::vector<TimedPair>& pairs : processes) {
+    const auto readings = [&pairs](Clock by) {
+      return byBlock(pairs, [by](const TimedPair& pair) {
+        return std::array{reading(pair.candidate[0], by), reading(pair.candidate[1], by)};
+      });
+    };
+    candidate.push_back(readings(clock));
+    wall.push_back(readings(Clock::wall));
   }
-  const std::vector<double> times = flattened(timesByBlock);
+  const std::vector<double> times = flattened(candidate);
+  if (times.empty()) throw Error("timing: no pair of frames was timed");
+  TimingFigures figures;
   figures.medianMs = median(times);
-  figures.wallMedianMs = median(wallTimes);
+  figures.wallMedianMs = median(flattened(wall));
   figures.madMs = medianAbsoluteDeviation(times);
   figures.p95Ms = percentile(times, 95.0);
   figures.n = static_cast<int>(times.size());
-  figures.ci95Ms = bootstrapInterval(timesByBlock, medianInPlace, plan.bootstrap);
-  if (const auto ratios = ratiosByBlock(figures.pairs, plan)) {
-    figures.ratio = median(flattened(*ratios));
-    figures.ratioCi95 = ratioInterval(figures.pairs, plan);
+  figures.ci95Ms = bootstrapInterval(candidate, medianInPlace, plan);
+  if (const std::vector<GroupedValues> ratios = ratiosOf(processes, clock); !ratios.empty()) {
+    figures.ratio = median(flattened(ratios));
+    figures.ratioCi95 = bootstrapInterval(ratios, medianInPlace, plan);
   }
+  figures.pairs = processes.front();
   return figures;
 }
 

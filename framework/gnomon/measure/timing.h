@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "gnomon/base/statistics.h"
@@ -79,6 +80,11 @@ struct TimingFigures {
 
   bool operator==(const TimingFigures&) const = default;
 };
+
+/// The figures of pairs that were measured by one process or several, each with blocks of its own. Intervals by bootstrap over
+/// processes, blocks, then pairs. Throws Error without pairs, on a clock that a frame lacks, and on a time that is negative or
+/// not finite. `pairs` are those of the first process.
+TimingFigures timingFigures(std::span<const std::vector<TimedPair>> processes, Clock clock, const BootstrapPlan& plan = {});
 
 /// One block renders the poses in order with one side (A), in order with the other (B), then B reversed and A reversed. Each
 /// pose's two frames of either side lie symmetric about the block's centre, so drift that is linear in time cancels within

@@ -156,6 +156,27 @@ TEST(MeasurePaired, AHalfWidthWithoutTimeIsAnError) {
   EXPECT_THROW(measurePaired(unsteady(0.0), {.halfWidth = 0.1}), Error);
 }
 
+/// Two pairs of one block whose candidate takes `ms` and whose baseline takes 1.
+std::vector<TimedPair> steadyPairs(double ms) {
+  const TimedPair pair{0, 0, {allClocks(ms), allClocks(ms)}, {allClocks(1.0), allClocks(1.0)}};
+  return {pair, pair};
+}
+
+TEST(TimingFigures, ProcessesThatDisagreeWidenTheInterval) {
+  const std::vector<std::vector<TimedPair>> processes{steadyPairs(2.0), steadyPairs(3.0), steadyPairs(4.0)};
+  const TimingFigures figures = timingFigures(processes, Clock::cpu);
+  EXPECT_EQ(figures.ratio, 3.0);
+  EXPECT_LT(figures.ratioCi95->low, 2.0);
+  EXPECT_GT(figures.ratioCi95->high, 4.0);
+  EXPECT_GT(figures.ci95Ms->high, 4.0);
+  EXPECT_EQ(figures.n, 3 * 4);
+  EXPECT_EQ(figures.pairs, processes[0]);
+}
+
+TEST(TimingFigures, NothingTimedIsAnError) {
+  EXPECT_THROW(timingFigures({}, Clock::cpu), Error);
+}
+
 TEST(PoseSteps, NoSideStandsStillBetweenTwoFrames) {
   PoseSteps steps(3);
   std::map<Side, int> last;

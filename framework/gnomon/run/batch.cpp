@@ -77,6 +77,7 @@ std::map<std::string, JobRecord> earlierResults(const std::filesystem::path& dir
 /// Whether a job's earlier record holds all that this batch would make again, and its pictures are there.
 bool isWhole(const JobRecord& record, const ResolvedRun& run, const BatchOptions& options) {
   if (record.status != JobStatus::ok || (options.measureTime && !record.time)) return false;
+  if (options.timesOnly) return true;
   const auto paths = picturePaths(options.out / "images", record.job, run.config.output.images, options.exr);
   return std::all_of(paths.begin(), paths.end(), [](const auto& path) { return fileStamp(path).has_value(); });
 }
@@ -139,22 +140,25 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
   const std::string shard = options.shards > 1 ? fmt::format(".{}", options.shard) : "";
   summary.results = options.out / fmt::format("results{}.jsonl", shard);
   const ResultsLock lock(summary.results);
+  Trace trace(fmt::format("gnomon batch{}", shard));
+  if (options.measureTime) {
+    const TraceSlice slice(&trace, "clock trials");
+    const std::vector<ClockTrial> trials = runClockTrials();
+    const ClockChoice choice = options.timer ? provenClock(trials, *options.timer) : chooseClock(trials);
+    summary.clock = choice.clock;
+    log::info(fmt::format("clock: {} ({})", clockName(choice.clock), choice.reason));
+  }
   const std::map<std::string, JobRecord> earlier =
       options.resume ? earlierResults(options.out) : std::map<std::string, JobRecord>{};
   if (!options.resume) writeFileAtomically(summary.results, "");
 
-  Trace trace(fmt::format("gnomon batch{}", shard));
-  LightRunOptions how{.referenceCache = options.referenceCache,
-                      .imageDirectory = options.out / "images",
-                      .exr = options.exr,
-                      .checkFinite = options.checkFinite,
-                      .trace = &trace};
-  if (options.measureTime) {
-    const TraceSlice slice(&trace, "clock trials");
-    const ClockChoice choice = chooseClock(runClockTrials());
-    how.clock = choice.clock;
-    log::info(fmt::format("clock: {} ({})", clockName(choice.clock), choice.reason));
-  }
+  const LightRunOptions how{.referenceCache = options.referenceCache,
+                            .clock = summary.clock,
+                            .timesOnly = options.timesOnly,
+                            .imageDirectory = options.out / "images",
+                            .exr = options.exr,
+                            .checkFinite = options.checkFinite,
+                            .trace = &trace};
 
   std::size_t total = 0;
   for (const ResolvedRun& run : runs) total += run.jobs.size();
@@ -201,6 +205,7 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
         progress(mine + 1, total, name, &summary.records.back());
       }
     }
+    if (options.timesOnly) continue;
     LightsPictures ofAllLights(run, options, trace);
     for (const ResolvedTechnique& technique : lightsPictureTechniques(run)) {
       if (!isMine(pictures++)) continue;

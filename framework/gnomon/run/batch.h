@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct BatchOptions {
   int shard = 0;  ///< this process takes jobs shard, shard + shards, ... of all
   int shards = 1;
   bool measureTime = true;
+  bool timesOnly = false;           ///< no reference, errors, counters or pictures
+  std::optional<Clock> timer = {};  ///< empty: one that proves itself (chooseClock)
   bool exr = true;
   bool checkFinite = false;
   std::filesystem::path referenceCache = {};
@@ -39,6 +42,7 @@ struct BatchSummary {
   std::size_t notOk = 0;
   std::filesystem::path results;
   std::filesystem::path trace;  ///< empty where nothing had to be run
+  std::optional<Clock> clock;   ///< that times were measured by
 };
 
 /// Called when a job starts (record null) and when it has ended.
@@ -49,7 +53,8 @@ using BatchProgress =
 /// under all of them; a shard draws every n-th of these too. One that fails or is refused ends nothing. Each record is appended
 /// whole and synced. OUT/trace.json (of a shard, trace.I.json) shows where the time went: a slice for each job that was run,
 /// and in it its steps and passes; it is of this run alone, written at its end, and stays as it was if nothing had to be run.
-/// Throws Error only for what ends a batch: a folder that cannot be written, a results file that another process is writing.
+/// Throws Error only for what ends a batch: a timer that does not prove itself, a folder that cannot be written, a results file
+/// that another process is writing.
 BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, const BatchOptions& options,
                       const BatchProgress& progress);
 

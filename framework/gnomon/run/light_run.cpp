@@ -60,8 +60,13 @@ struct LightRun::State : LightStage {
       return report;
     });
     record.reason = impossibleValues(visibility);
-    record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
     record.memoryBytes = session.memoryBytes(slot);
+    if (!options.timesOnly) judge(record, slot, visibility, frame);
+    if (options.clock) time(record, slot);
+  }
+
+  void judge(JobRecord& record, Slot slot, const Image& visibility, const FrameReport& frame) {
+    record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
     if (!options.imageDirectory.empty()) {
       const TraceSlice slice(options.trace, "pictures");
       const Image shaded = session.shaded(slot);
@@ -70,14 +75,15 @@ struct LightRun::State : LightStage {
                     session);
     }
     record.work = traced("work", [&] { return measureWork(*this, slot, frame.technique.counters); });
-    if (options.clock) {
-      const Slot baseline =
-          traced("baseline's set-up", [&] { return session.addSlot(run.baseline.technique, run.baseline.parameters); });
-      const std::string& refusal = session.support(baseline).refusal;
-      record.time = measureTime(*this, slot, refusal.empty() ? std::optional(baseline) : std::nullopt);
-      if (!refusal.empty() && record.reason.empty())
-        record.reason = fmt::format("no ratio: the baseline '{}' refuses this light: {}", run.baseline.name(), refusal);
-    }
+  }
+
+  void time(JobRecord& record, Slot slot) {
+    const Slot baseline =
+        traced("baseline's set-up", [&] { return session.addSlot(run.baseline.technique, run.baseline.parameters); });
+    const std::string& refusal = session.support(baseline).refusal;
+    record.time = measureTime(*this, slot, refusal.empty() ? std::optional(baseline) : std::nullopt);
+    if (!refusal.empty() && record.reason.empty())
+      record.reason = fmt::format("no ratio: the baseline '{}' refuses this light: {}", run.baseline.name(), refusal);
   }
 };
 

@@ -17,6 +17,7 @@ namespace gnomon {
 struct LightRunOptions {
   std::filesystem::path referenceCache = {};  ///< empty: none
   std::optional<Clock> clock = {};            ///< times are measured with it; empty: no times
+  bool timesOnly = false;                     ///< no reference, errors, counters or pictures
   std::filesystem::path imageDirectory = {};  ///< empty: no pictures
   bool exr = false;
   bool checkFinite = false;

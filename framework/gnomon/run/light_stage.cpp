@@ -42,8 +42,9 @@ LightStage::LightStage(const ResolvedRun& r, std::size_t l, Registry& g, LightRu
       registry(g),
       options(std::move(o)),
       session(sessionSetup(r, l)),
-      reference(tracedReference()),
+      reference(options.timesOnly ? RenderedReference{} : tracedReference()),
       machine{gl::currentContextInfo().renderer, processorName()} {
+  if (options.timesOnly) return;
   session.runShared();
   receivers = receiverImages(session);
   classes = classesOf(session, receivers, reference.halves);
