@@ -28,6 +28,9 @@ class PlantedTechnique {
   /// Through one of the cases of the suite.
   stability::CellReport check(const std::string& caseName);
 
+  /// Holds "planted" and the installation's techniques.
+  Registry& registry() { return *registry_; }
+
  private:
   TemporaryFolder folder_;
   std::unique_ptr<Registry> registry_;

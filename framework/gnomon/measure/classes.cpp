@@ -27,15 +27,6 @@ glm::dvec3 vectorAt(const Image& image, int x, int y) {
   return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
-bool onOneSurface(glm::dvec3 p1, glm::dvec3 n1, glm::dvec3 p2, glm::dvec3 n2) {
-  const double cosine = glm::dot(n1, n2);
-  if (!(cosine > kSameSurfaceCosine)) return false;
-  const double sineOfHalf = std::sqrt(std::max(0.0, 0.5 * (1.0 - cosine)));  // rounding may give a cosine above 1
-  const glm::dvec3 step = p2 - p1;
-  const double gap = 0.5 * (std::abs(glm::dot(n1, step)) + std::abs(glm::dot(n2, step)));
-  return gap <= (sineOfHalf + kSameSurfaceSlack) * glm::length(step);
-}
-
 bool isLitUmbraChange(PixelClass a, PixelClass b) {
   return (a == PixelClass::lit && b == PixelClass::umbra) || (a == PixelClass::umbra && b == PixelClass::lit);
 }
@@ -52,6 +43,15 @@ ClassCode codeWithoutBand(const ClassInputs& inputs, int x, int y) {
 }
 
 }  // namespace
+
+bool onOneSurface(glm::dvec3 p1, glm::dvec3 n1, glm::dvec3 p2, glm::dvec3 n2) {
+  const double cosine = glm::dot(n1, n2);
+  if (!(cosine > kSameSurfaceCosine)) return false;
+  const double sineOfHalf = std::sqrt(std::max(0.0, 0.5 * (1.0 - cosine)));  // rounding may give a cosine above 1
+  const glm::dvec3 step = p2 - p1;
+  const double gap = 0.5 * (std::abs(glm::dot(n1, step)) + std::abs(glm::dot(n2, step)));
+  return gap <= (sineOfHalf + kSameSurfaceSlack) * glm::length(step);
+}
 
 ClassCode ClassCode::decode(float code) {
   const int bits = static_cast<int>(code);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 
 #include "gnomon/base/image.h"
 
@@ -30,6 +31,9 @@ inline constexpr double kSameSurfaceCosine = 0.9;
 /// Slack of the depth test below, relative to the step between two pixels. Rounding of 32-bit positions makes about 1e-4 of
 /// it; parallel surfaces one behind the other are told apart down to views 1.1 degrees above them (asin 0.02).
 inline constexpr double kSameSurfaceSlack = 0.02;
+
+/// Whether the step from p1 to p2, with unit normals n1 and n2, stays on one surface: see classifyPixels.
+bool onOneSurface(glm::dvec3 p1, glm::dvec3 n1, glm::dvec3 p2, glm::dvec3 n2);
 
 /// What the classes are made of; all of one size. Positions are camera-relative, in metres (or any one unit).
 struct ClassInputs {

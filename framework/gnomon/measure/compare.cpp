@@ -123,6 +123,7 @@ void compareError(JobComparer& figures, const JobRecord& before, const JobRecord
   figures.grained("splits.leak", c.leak, d.leak);
   figures.grained("splits.detachment", c.detachment, d.detachment);
   figures.grained("splits.penumbra", c.penumbra, d.penumbra);
+  figures.grained("splits.offset", c.offset, d.offset);
   figures.grained("splits.shimmer", c.shimmer, d.shimmer);
   figures.grained("flip.mean", before.flip.value_or(FlipFigures{}).mean, after.flip.value_or(FlipFigures{}).mean);
 }

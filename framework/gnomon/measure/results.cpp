@@ -97,6 +97,7 @@ void keys(Visitor& visit, ErrorSplits& splits) {
   visit("leak", splits.leak);
   visit("detachment", splits.detachment);
   visit("penumbra", splits.penumbra);
+  visit("offset", splits.offset);
   visit("shimmer", splits.shimmer);
 }
 

@@ -61,7 +61,7 @@ JobRecord fullRecord() {
   time.gapMs = 0.25;
   time.repeats = 3;
   record.time = time;
-  record.splits = ErrorSplits{.acne = 0.1, .leak = 0.2, .detachment = 0.3, .penumbra = 0.4, .shimmer = 0.5};
+  record.splits = ErrorSplits{.acne = 0.1, .leak = 0.2, .detachment = 0.3, .penumbra = 0.4, .offset = 0.5, .shimmer = 0.6};
   record.flip = FlipFigures{.mean = 0.6, .p99 = 0.7};
   record.reference = ReferenceRecord{.rays = 10, .raysSaved = 5, .standardError = 0.01, .cosineFloor = 0.02};
   record.work = {.passesRun = 1,
@@ -104,7 +104,7 @@ TEST(Results, KeysAreThoseOfTheFormat) {
   EXPECT_EQ(keysOf(line), (std::set<std::string>{"job", "config", "scene", "light", "technique", "parameters", "status",
                                                  "reason", "error", "splits", "flip", "reference", "time", "work",
                                                  "memory_bytes", "plan", "without", "machine"}));
-  EXPECT_EQ(keysOf(line["splits"]), (std::set<std::string>{"acne", "leak", "detachment", "penumbra", "shimmer"}));
+  EXPECT_EQ(keysOf(line["splits"]), (std::set<std::string>{"acne", "leak", "detachment", "penumbra", "offset", "shimmer"}));
   EXPECT_EQ(keysOf(line["flip"]), (std::set<std::string>{"mean", "p99"}));
   EXPECT_EQ(keysOf(line["reference"]), (std::set<std::string>{"rays", "rays_saved", "standard_error", "cosine_floor"}));
   EXPECT_EQ(keysOf(line["error"]), (std::set<std::string>{"mse", "mse_se", "rmse", "rmse_se", "rmse_band", "mae", "bias", "p99",

@@ -117,7 +117,9 @@ std::shared_ptr<const FieldTable> measureTable() {
           .among(RegimePath::names()),
       integer("frames", &MeasureChoice::frames, {.min = 1, .max = 100000}, Binding::structure, "timed frames of each regime"),
       integer("blocks", &MeasureChoice::blocks, {.min = 1, .max = 1000}, Binding::structure,
-              "blocks of the order technique, baseline, baseline, technique that share the frames")}
+              "blocks of the order technique, baseline, baseline, technique that share the frames"),
+      integer("shimmer_frames", &MeasureChoice::shimmerFrames, {.min = 0, .max = 1000}, Binding::structure,
+              "frames of each path, the light's and the camera's, along which shimmer is measured; 0: it is not")}
       .table();
 }
 

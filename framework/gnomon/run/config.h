@@ -50,6 +50,7 @@ struct MeasureChoice {
   std::vector<std::string> regimes{"dynamic"};  ///< some of dynamic, static
   int frames = 30;                              ///< timed frames of a regime
   int blocks = 5;                               ///< ABBA blocks that share the frames
+  int shimmerFrames = 6;                        ///< of each path along which shimmer is measured; 0: it is not
 };
 
 struct RunConfig {

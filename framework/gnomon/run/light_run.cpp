@@ -12,6 +12,7 @@
 #include "gnomon/run/job_time.h"
 #include "gnomon/run/job_work.h"
 #include "gnomon/run/pictures.h"
+#include "gnomon/run/shimmer.h"
 
 namespace gnomon {
 
@@ -67,6 +68,8 @@ struct LightRun::State : LightStage {
 
   void judge(JobRecord& record, Slot slot, const Image& visibility, const FrameReport& frame) {
     record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
+    record.splits = measureSplits({visibility, reference.halves.a, reference.halves.b, classes, receivers.positions,
+                                   receivers.normals, nominal(), run.camera.position});
     if (!options.imageDirectory.empty()) {
       const TraceSlice slice(options.trace, "pictures");
       const Image shaded = session.shaded(slot);
@@ -75,6 +78,7 @@ struct LightRun::State : LightStage {
                     session);
     }
     record.work = traced("work", [&] { return measureWork(*this, slot, frame.technique.counters); });
+    record.splits->shimmer = traced("shimmer", [&] { return measureShimmer(session, slot, run, light, motion); });
   }
 
   void time(JobRecord& record, Slot slot) {
@@ -119,11 +123,12 @@ JobRecord LightRun::run(const ResolvedTechnique& technique) {
 std::string jobKey(const ResolvedRun& run, std::size_t light, const ResolvedTechnique& technique) {
   const Light bare = withoutName(run.lights[light]);
   const std::string decides = fmt::format(
-      "{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {} {} {}", contentHash(run.scene), writeObject(*lightTable(), &bare).dump(),
-      writeObject(*cameraTable(), &run.camera).dump(), run.config.output.size.x, run.config.output.size.y, technique.name(),
-      technique.parametersJson().dump(), run.reference.name(), run.reference.parametersJson().dump(), run.baseline.name(),
-      run.baseline.parametersJson().dump(), writeObject(*planOverridesTable(), &run.config.plan).dump(),
-      run.config.measure.frames, run.config.measure.blocks, fmt::join(run.config.measure.regimes, " "));
+      "{}\n{}\n{}\n{}x{}\n{} {}\n{} {}\n{} {}\n{} {} {} {} {}", contentHash(run.scene),
+      writeObject(*lightTable(), &bare).dump(), writeObject(*cameraTable(), &run.camera).dump(), run.config.output.size.x,
+      run.config.output.size.y, technique.name(), technique.parametersJson().dump(), run.reference.name(),
+      run.reference.parametersJson().dump(), run.baseline.name(), run.baseline.parametersJson().dump(),
+      writeObject(*planOverridesTable(), &run.config.plan).dump(), run.config.measure.frames, run.config.measure.blocks,
+      fmt::join(run.config.measure.regimes, " "), run.config.measure.shimmerFrames);
   return technique.name() + "-" + hashHex(decides).substr(0, 16);
 }
 

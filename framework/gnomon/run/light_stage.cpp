@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 
 namespace gnomon {
 
@@ -42,30 +43,29 @@ LightStage::LightStage(const ResolvedRun& r, std::size_t l, Registry& g, LightRu
       registry(g),
       options(std::move(o)),
       session(sessionSetup(r, l)),
-      reference(options.timesOnly ? RenderedReference{} : tracedReference()),
       machine{gl::currentContextInfo().renderer, processorName()} {
   if (options.timesOnly) return;
+  renderReferences();
   session.runShared();
   receivers = receiverImages(session);
   classes = classesOf(session, receivers, reference.halves);
 }
 
-/// A technique whose defences are off is judged by a reference that has its own.
-RenderedReference LightStage::soundReference() {
-  const ReferenceRequest request{run.reference, options.referenceCache};
-  if (run.config.plan.without.empty()) return renderReference(session, registry, request);
-  SessionSetup setup = sessionSetup(run, light);
-  setup.overrides.without.clear();
-  Session sound(std::move(setup));
-  return renderReference(sound, registry, request);
-}
-
-RenderedReference LightStage::tracedReference() {
+void LightStage::renderReferences() {
+  // A technique whose defences are off is judged by a reference that has its own.
+  std::optional<Session> sound;
+  if (!run.config.plan.without.empty()) {
+    SessionSetup setup = sessionSetup(run, light);
+    setup.overrides.without.clear();
+    sound.emplace(std::move(setup));
+  }
+  Session& by = sound ? *sound : session;
   TraceSlice slice(options.trace, "reference");
-  RenderedReference rendered = soundReference();
+  reference = renderReference(by, registry, {run.reference, options.referenceCache});
   slice.note("technique", run.reference.name());
-  slice.note("from", rendered.fromCache ? "cache" : fmt::format("{} rays", rendered.rays));
-  return rendered;
+  slice.note("from", reference.fromCache ? "cache" : fmt::format("{} rays", reference.rays));
+  const TraceSlice inMotion(options.trace, "reference in motion");
+  motion = renderMotionReference(by, registry, run, light, options.referenceCache);
 }
 
 }  // namespace gnomon

@@ -5,6 +5,7 @@
 
 #include "gnomon/run/light_run.h"
 #include "gnomon/run/reference.h"
+#include "gnomon/run/shimmer.h"
 #include "gnomon/session.h"
 
 namespace gnomon {
@@ -15,12 +16,13 @@ struct LightStage {
   Registry& registry;
   LightRunOptions options;
   Session session;
-  RenderedReference reference;
+  RenderedReference reference;  ///< as all below but the machine: nothing where only times are measured
+  MotionReference motion;
   ReceiverImages receivers;
   Image classes;
   MachineRecord machine;
 
-  /// Renders or loads the reference. Throws Error.
+  /// Renders or loads the references. Throws Error.
   LightStage(const ResolvedRun& r, std::size_t l, Registry& g, LightRunOptions o);
 
   const Light& nominal() const { return run.lights[light]; }
@@ -34,8 +36,7 @@ struct LightStage {
   }
 
  private:
-  RenderedReference soundReference();
-  RenderedReference tracedReference();
+  void renderReferences();
 };
 
 /// How many poses a regime's path has.
