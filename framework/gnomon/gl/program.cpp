@@ -174,6 +174,19 @@ std::string withFileNames(const std::string& log, const std::vector<std::string>
   return result;
 }
 
+void countReads(std::vector<ExpandedShader>& shaders, const std::vector<ShaderStage>& stages, const ReadCounting& counting) {
+  std::vector<std::string> texts;
+  for (const ExpandedShader& shader : shaders) texts.push_back(shader.text);
+  const std::vector<std::string> names = readableNames(texts);
+  for (std::size_t i = 0; i < shaders.size(); ++i) {
+    try {
+      shaders[i].text = instrumented(shaders[i].text, stages[i].type, names, counting);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", stages[i].file, error.what()));
+    }
+  }
+}
+
 }  // namespace
 
 ExpandedShader expandShader(const ShaderSources& sources, const std::string& file, const std::vector<Constant>& constants) {
@@ -188,9 +201,13 @@ ProgramObject makeProgram(const ShaderSources& sources, const std::vector<Shader
                           const std::vector<Constant>& constants, const std::string& label) {
   ProgramObject program(glCreateProgram());
   setLabel(GL_PROGRAM, program.name(), label);
+  std::vector<ExpandedShader> expanded;
+  for (const ShaderStage& stage : stages) expanded.push_back(expandShader(sources, stage.file, constants));
+  if (sources.readCounting) countReads(expanded, stages, *sources.readCounting);
   std::vector<ShaderObject> shaders;
-  for (const ShaderStage& stage : stages) {
-    const ExpandedShader source = expandShader(sources, stage.file, constants);
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const ShaderStage& stage = stages[i];
+    const ExpandedShader& source = expanded[i];
     if (sources.defencesMet) sources.defencesMet->insert(source.defences.begin(), source.defences.end());
     const ShaderObject& shader = shaders.emplace_back(glCreateShader(stage.type));
     const char* text = source.text.c_str();

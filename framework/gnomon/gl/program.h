@@ -5,11 +5,13 @@
 #include <glm/vec2.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "gnomon/gl/instrument.h"
 #include "gnomon/gl/objects.h"
 
 namespace gnomon::gl {
@@ -26,6 +28,7 @@ struct ShaderSources {
   std::map<std::string, std::string> generated;    ///< includes that are not files, such as "parameters"
   std::set<std::string> defencesOff = {};          ///< names whose GNOMON_DEFENCE(name) is false
   std::shared_ptr<std::set<std::string>> defencesMet = {};  ///< where makeProgram notes the names it meets; null: nowhere
+  std::optional<ReadCounting> readCounting = {};            ///< programs count the texels that they read
 };
 
 struct ShaderStage {

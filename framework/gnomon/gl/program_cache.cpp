@@ -1,5 +1,7 @@
 #include "gnomon/gl/program_cache.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -23,6 +25,10 @@ bool mentions(const std::string& text, const std::string& word) {
 std::string expandAll(const ShaderSources& sources, const std::vector<ShaderStage>& stages,
                       const std::vector<Constant>& constants) {
   std::string all;
+  if (const auto& counting = sources.readCounting) {
+    const glm::ivec2 pixels = counting->pixels.value_or(glm::ivec2(0));
+    all += fmt::format("// counts reads, of {} x {} pixels, depth {}\n", pixels.x, pixels.y, counting->writesDepth);
+  }
   for (const ShaderStage& stage : stages) {
     const ExpandedShader shader = expandShader(sources, stage.file, constants);
     if (sources.defencesMet) sources.defencesMet->insert(shader.defences.begin(), shader.defences.end());
@@ -107,6 +113,7 @@ std::shared_ptr<const Program> ProgramCache::get(const ShaderSources& sources, c
   auto program = std::make_shared<Program>();
   program->object = makeProgram(sources, stages, used, label);
   program->text = std::move(text);
+  if (sources.readCounting) program->readable = readableNames({program->text});
   bindUniforms(*program);
   bindBlocks(*program);
   std::erase_if(known_, [](const auto& each) { return each.expired(); });

@@ -25,6 +25,7 @@ struct Program {
   std::vector<Point> images;
   std::vector<Point> uniforms;  ///< blocks that a stage refers to
   std::vector<Point> storages;
+  std::vector<std::string> readable = {};  ///< where it counts reads: names in the order of its counts
 };
 
 /// Of one context. Keeps the programs that were asked for last, and knows all

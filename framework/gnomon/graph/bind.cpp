@@ -28,6 +28,7 @@ const Handle* find(const std::string& name, const std::vector<Named>& listed, Ha
 
 /// The binding of a block, or an error.
 BoundProgram::Block blockOf(const PassNode& node, const gl::Program::Point& point, GLenum target) {
+  if (point.name == gl::kReadsBlock) return {target, point.at, BoundProgram::Source::readCounts, {}};
   if (point.name == "DrawRecords" || point.name == "TriangleNormals") {  // the graph's own: bound when the pass draws
     const auto* raster = std::get_if<RasterPass>(&node.kind);
     if (raster == nullptr || raster->vertices) {
@@ -75,14 +76,17 @@ void requireWritten(const Graph::State& s, const PassNode& node, std::size_t ind
   }
 }
 
-BoundProgram bindProgram(const Graph::State& s, const PassNode& node, std::size_t index) {
+BoundProgram bindProgram(const Graph::State& s, const PassNode& node, std::size_t index,
+                         const std::optional<gl::ReadCounting>& counting) {
   const Recipe& recipe = node.recipe;
+  gl::ShaderSources sources = recipe.context->sources;
+  sources.readCounting = counting;
   std::vector<gl::Constant> constants = recipe.context->constants;
   constants.insert(constants.end(), s.specialised.begin(), s.specialised.end());
   constants.insert(constants.end(), recipe.constants.begin(), recipe.constants.end());
   BoundProgram bound;
   try {
-    bound.program = s.shares.programs->get(recipe.context->sources, recipe.stages, constants, s.name + "/" + node.name);
+    bound.program = s.shares.programs->get(sources, recipe.stages, constants, s.name + "/" + node.name);
   } catch (const Error& error) {
     throw Error(fmt::format("pass '{}': {}", node.name, error.what()));
   }

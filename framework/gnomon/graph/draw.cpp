@@ -85,30 +85,40 @@ const void* atOffset(std::size_t offset) {
 
 }  // namespace
 
-std::size_t GraphExecution::texelsOf(const PassNode& node) const {
-  std::size_t total = 0;
+void GraphExecution::countWritten(const PassNode& node, const std::optional<glm::ivec4>& region) {
   for (const Target& target : node.writes) {
     const TextureInfo& info = s_.texture(target.texture).info;
-    total += texelCount(info) / (target.layer >= 0 ? static_cast<std::size_t>(std::max(info.layers, 1)) : 1);
+    std::uint64_t texels = texelCount(info) / (target.layer >= 0 ? static_cast<std::size_t>(std::max(info.layers, 1)) : 1);
+    if (region) texels = static_cast<std::uint64_t>(region->z) * static_cast<std::uint64_t>(region->w);
+    s_.report.counters.texelsWritten += texels;
+    s_.report.counters.bytesWritten += texels * static_cast<std::uint64_t>(formatFacts(info.format).bytes);
   }
-  return total;
 }
 
 void GraphExecution::bind(const PassNode& node) {
-  glUseProgram(node.bound.program->object.name());
-  for (GLuint unit = 0; unit < node.bound.textures.size(); ++unit) {
-    glBindTextureUnit(unit, s_.texture(node.bound.textures[unit]).object.name());
+  const BoundProgram& bound = counter_ ? counter_->bound() : node.bound;
+  glUseProgram(bound.program->object.name());
+  for (GLuint unit = 0; unit < bound.textures.size(); ++unit) {
+    glBindTextureUnit(unit, s_.texture(bound.textures[unit]).object.name());
     glBindSampler(unit, s_.nearest.name());
   }
-  for (GLuint unit = 0; unit < node.bound.images.size(); ++unit) {
-    const TextureResource& image = s_.texture(node.bound.images[unit]);
+  for (GLuint unit = 0; unit < bound.images.size(); ++unit) {
+    const TextureResource& image = s_.texture(bound.images[unit]);
     glBindImageTexture(unit, image.object.name(), 0, GL_TRUE, 0, GL_READ_WRITE, formatFacts(image.info.format).internalFormat);
   }
-  for (const BoundProgram::Block& block : node.bound.blocks) {
-    const GLuint buffer = block.source == BoundProgram::Source::triangleNormals ? frame_.gpu.triangleNormals()
-                                                                                : s_.buffer(block.buffer).object.name();
-    glBindBufferBase(block.target, block.binding, buffer);
+  for (const BoundProgram::Block& block : bound.blocks) glBindBufferBase(block.target, block.binding, bufferOf(block));
+}
+
+GLuint GraphExecution::bufferOf(const BoundProgram::Block& block) const {
+  switch (block.source) {
+    case BoundProgram::Source::triangleNormals:
+      return frame_.gpu.triangleNormals();
+    case BoundProgram::Source::readCounts:
+      return counter_->buffer();
+    case BoundProgram::Source::buffer:
+      break;
   }
+  return s_.buffer(block.buffer).object.name();
 }
 
 void GraphExecution::prepare(const PassNode& node, GLuint vertexArray, Blend blend) {
@@ -146,17 +156,16 @@ void GraphExecution::perform(const PassNode& node, const FullscreenPass& pass) {
     const StencilFace face{.compare = pass.stencil->compare};
     setStencil({face, face, pass.stencil->reference, pass.stencil->mask, 0});
   }
-  std::uint64_t texels = texelsOf(node);
+  std::optional<glm::ivec4> region;
   if (pass.region) {  // after the clear, which a scissor would hold back too
-    const glm::ivec4 region = pass.region();
+    region = pass.region();
     glEnable(GL_SCISSOR_TEST);
-    glScissor(region.x, region.y, region.z, region.w);
-    texels = static_cast<std::uint64_t>(region.z) * static_cast<std::uint64_t>(region.w);
+    glScissor(region->x, region->y, region->z, region->w);
   }
   glDrawArrays(GL_TRIANGLES, 0, 3);
   leaveState();
   ++s_.report.counters.draws;
-  s_.report.counters.texelsWritten += texels;
+  countWritten(node, region);
 }
 
 void GraphExecution::perform(const PassNode& node, const RasterPass& pass) {
@@ -180,7 +189,7 @@ void GraphExecution::perform(const PassNode& node, const RasterPass& pass) {
   }
   leaveState();
   if (!node.bufferWrites.empty()) glMemoryBarrier(kAfterShaderWrites);
-  s_.report.counters.texelsWritten += texelsOf(node);
+  countWritten(node);
 }
 
 void GraphExecution::drawScene(const RasterPass& pass) {
@@ -250,12 +259,12 @@ void GraphExecution::perform(const PassNode& node, const ComputePass& pass) {
                       static_cast<GLuint>(pass.groups.z));
   }
   glMemoryBarrier(kAfterShaderWrites);
-  s_.report.counters.texelsWritten += texelsOf(node);
+  countWritten(node);
 }
 
 void GraphExecution::perform(const PassNode& node, const CpuPass& pass) {
   pass.run(*this);
-  s_.report.counters.texelsWritten += texelsOf(node);
+  countWritten(node);
 }
 
 void GraphExecution::perform(const PassNode& /*node*/, const HistoryPass& pass) {

@@ -66,10 +66,13 @@ bool contains(const Handles& handles, Handle handle) {
 
 void GraphExecution::execute() {
   s_.report.counters = {};
+  s_.report.pixelReads = options_.countReads ? Image(s_.outputSize.x, s_.outputSize.y) : Image();
   for (PassReport& pass : s_.report.passes) {
     pass.ran = false;
     pass.work = {};
     pass.fragments.reset();
+    pass.reads.reset();
+    pass.uncounted.clear();
     pass.cpuMs = pass.wallMs = 0.0;
   }
   for (PassNode& node : s_.passes) {
@@ -254,8 +257,11 @@ void GraphExecution::runTimed(PassNode& node) {
   const bool draws = std::holds_alternative<RasterPass>(node.kind) || std::holds_alternative<FullscreenPass>(node.kind);
   try {
     const DebugGroup group(node.name);
+    if (options_.countReads) counter_ = ReadCounter::of(s_, node, report);
     SampleCount samples(options_.countFragments && draws);
     std::visit([&](const auto& kind) { perform(node, kind); }, node.kind);
+    if (counter_) counter_->finish(s_, report, s_.report.pixelReads);
+    counter_.reset();
     if (const auto passed = samples.finished()) report.fragments = report.fragments.value_or(0) + *passed;
     for (const Target& written : node.writes) s_.texture(written.texture).object.hold(&s_.texture(written.texture));
     if (options_.messages != nullptr) options_.messages->throwIfError("while it ran");

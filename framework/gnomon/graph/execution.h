@@ -1,6 +1,7 @@
 // One frame of a graph. Not part of the contract.
 #pragma once
 
+#include "gnomon/graph/read_counter.h"
 #include "gnomon/graph/state.h"
 
 namespace gnomon {
@@ -49,13 +50,15 @@ class GraphExecution final : public CpuContext {
   void clearTargets(const PassNode& node, const RasterPass& pass);
   void drawScene(const RasterPass& pass);
   void drawVertices(const VertexDraw& draw);
-  std::size_t texelsOf(const PassNode& node) const;
+  void countWritten(const PassNode& node, const std::optional<glm::ivec4>& region = {});
+  GLuint bufferOf(const BoundProgram::Block& block) const;
 
   Graph::State& s_;
   const FrameInputs& frame_;
   const Revisions& revisions_;
   const GraphRun& options_;
   PassNode* node_ = nullptr;
+  std::optional<ReadCounter> counter_;  ///< of the pass that runs, where its reads are counted
 };
 
 }  // namespace gnomon

@@ -2,6 +2,7 @@
 // for and something changed.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -65,17 +66,24 @@ struct PassReport {
   FrameCounters work = {};  ///< its part of the frame's counters
   /// Samples that passed, where asked for; none for compute and the CPU.
   std::optional<std::uint64_t> fragments = std::nullopt;
+  /// Texels that its shaders read, by the textures' formats, where asked for; none for the CPU, and where `uncounted` says why.
+  std::optional<std::map<Format, std::uint64_t>> reads = std::nullopt;
+  std::string uncounted = {};
 };
 
 struct GraphReport {
   FrameCounters counters;
   std::vector<PassReport> passes;
+  /// Texels that passes over the output's pixels read for each, where reads were counted; else empty. Full-screen passes
+  /// without a size of their own, and raster and compute passes whose targets have the output's.
+  Image pixelReads = {};
 };
 
 struct GraphRun {
   bool skipUnchanged = true;              ///< the plan's rule `skipping`
   bool timePasses = false;                ///< finish and time after each pass
   bool countFragments = false;            ///< by a query around each pass that draws
+  bool countReads = false;                ///< by other programs (gl/instrument.h), which are made for it
   bool checkFinite = false;               ///< throw at the first non-finite texel of a target
   gl::DebugMessages* messages = nullptr;  ///< where the driver's errors are looked up after each pass
 };

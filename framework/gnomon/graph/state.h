@@ -33,7 +33,7 @@ struct Recipe {
 
 /// A program with what lies at its binding points.
 struct BoundProgram {
-  enum class Source : std::uint8_t { buffer, triangleNormals };
+  enum class Source : std::uint8_t { buffer, triangleNormals, readCounts };
   struct Block {
     GLenum target;  ///< GL_UNIFORM_BUFFER or GL_SHADER_STORAGE_BUFFER
     GLuint binding;
@@ -177,8 +177,9 @@ struct Graph::State {
 // bind.cpp
 /// Compiles, then finds by introspection which textures and blocks the program
 /// really uses: listed ones first, then provided ones. Only those are reads, so
-/// that an unused include makes no dependency. Throws Error.
-BoundProgram bindProgram(const Graph::State& state, const PassNode& node, std::size_t index);
+/// that an unused include makes no dependency. With `counting`, a program that counts its reads. Throws Error.
+BoundProgram bindProgram(const Graph::State& state, const PassNode& node, std::size_t index,
+                         const std::optional<gl::ReadCounting>& counting = {});
 /// Gives the node the program, and the reads that follow from it.
 void useProgram(PassNode& node, BoundProgram bound);
 /// Throws Error unless an earlier pass than `index` has written all of the

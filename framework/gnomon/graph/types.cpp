@@ -69,6 +69,7 @@ FrameCounters& FrameCounters::operator+=(const FrameCounters& other) {
   draws += other.draws;
   primitives += other.primitives;
   texelsWritten += other.texelsWritten;
+  bytesWritten += other.bytesWritten;
   rays += other.rays;
   return *this;
 }
@@ -79,6 +80,7 @@ FrameCounters FrameCounters::operator-(const FrameCounters& earlier) const {
           .draws = draws - earlier.draws,
           .primitives = primitives - earlier.primitives,
           .texelsWritten = texelsWritten - earlier.texelsWritten,
+          .bytesWritten = bytesWritten - earlier.bytesWritten,
           .rays = rays - earlier.rays};
 }
 

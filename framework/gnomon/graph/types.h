@@ -101,6 +101,7 @@ struct FrameCounters {
   std::uint64_t draws = 0;
   std::uint64_t primitives = 0;     ///< triangles submitted by raster passes
   std::uint64_t texelsWritten = 0;  ///< by full-screen and cpu passes; raster passes by their target's size
+  std::uint64_t bytesWritten = 0;   ///< of those texels
   std::uint64_t rays = 0;
 
   FrameCounters& operator+=(const FrameCounters& other);

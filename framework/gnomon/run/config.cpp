@@ -105,7 +105,7 @@ std::shared_ptr<const FieldTable> outputTable() {
   return ParameterTable<OutputChoice>{
       size("size", &OutputChoice::size, {.min = 1, .max = 16384, .unit = "pixels"}, Binding::structure, "of the picture"),
       list("images", &OutputChoice::images, nullptr, "pictures to write")
-          .among({"shaded", "visibility", "error", "class", "reference"})}
+          .among({"shaded", "visibility", "error", "work", "class", "reference"})}
       .table();
 }
 

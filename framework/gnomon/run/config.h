@@ -43,7 +43,7 @@ struct TechniqueChoice {
 
 struct OutputChoice {
   glm::ivec2 size{800, 600};                  ///< pixels
-  std::vector<std::string> images{"shaded"};  ///< some of shaded, visibility, error, class, reference
+  std::vector<std::string> images{"shaded"};  ///< some of shaded, visibility, error, work, class, reference
 };
 
 struct MeasureChoice {

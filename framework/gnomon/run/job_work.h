@@ -1,12 +1,21 @@
-// What a frame of a job's technique did, counted. Internal to run/.
+// What one frame of a technique does.
 #pragma once
 
+#include <string>
+
+#include "gnomon/base/image.h"
+#include "gnomon/measure/results.h"
 #include "gnomon/run/light_stage.h"
 
 namespace gnomon {
 
-/// Runs all of the technique's passes once more, at the light's nominal pose, and counts them. `first` is of the frame in which
-/// the technique ran first: what ran in it, and what did not.
-WorkCounters measureWork(LightStage& stage, Slot slot, const FrameCounters& first);
+struct JobWork {
+  WorkCounters counters;
+  Image pixelReads;       ///< GraphReport::pixelReads
+  std::string uncounted;  ///< why texel reads are not known, where they are not
+};
+
+/// `first` are the counters of a frame in which everything ran. Runs the technique once more, counting.
+JobWork measureWork(LightStage& stage, Slot slot, const FrameCounters& first);
 
 }  // namespace gnomon

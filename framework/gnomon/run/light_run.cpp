@@ -70,14 +70,17 @@ struct LightRun::State : LightStage {
     record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
     record.splits = measureSplits({visibility, reference.halves.a, reference.halves.b, classes, receivers.positions,
                                    receivers.normals, nominal(), run.camera.position});
+    JobWork work = traced("work", [&] { return measureWork(*this, slot, frame.technique.counters); });
+    record.work = std::move(work.counters);
+    if (record.reason.empty()) record.reason = work.uncounted;
     if (!options.imageDirectory.empty()) {
       const TraceSlice slice(options.trace, "pictures");
       const Image shaded = session.shaded(slot);
       writePictures(options.imageDirectory, record.job, run.config.output.images, options.exr,
-                    {shaded, visibility, reference.halves, receivers.mask, classes, receivers.positions, receivers.normals},
+                    {shaded, visibility, reference.halves, receivers.mask, classes, receivers.positions, receivers.normals,
+                     work.pixelReads},
                     session);
     }
-    record.work = traced("work", [&] { return measureWork(*this, slot, frame.technique.counters); });
     record.splits->shimmer = traced("shimmer", [&] { return measureShimmer(session, slot, run, light, motion); });
   }
 

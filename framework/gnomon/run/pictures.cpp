@@ -1,6 +1,7 @@
 #include "gnomon/run/pictures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
@@ -59,6 +60,20 @@ Image signedErrorPicture(const Image& technique, const ReferencePair& reference,
   return picture;
 }
 
+Image workPicture(const Image& reads) {
+  // Linear light; each step is lighter than the one before it to every kind of eye.
+  static constexpr std::array<glm::vec3, 5> kScale{
+      {{0.0f, 0.0f, 0.0f}, {0.05f, 0.02f, 0.22f}, {0.42f, 0.03f, 0.17f}, {0.9f, 0.32f, 0.02f}, {1.0f, 1.0f, 1.0f}}};
+  Image picture(reads.width, reads.height, 3);
+  for (std::size_t i = 0; i < reads.pixels(); ++i) {
+    const float share = std::clamp(std::log1p(reads.data[i]) / std::log1p(kMostReads), 0.0f, 1.0f);
+    const float at = share * static_cast<float>(kScale.size() - 1);
+    const auto below = std::min(static_cast<std::size_t>(at), kScale.size() - 2);
+    put(picture, i, glm::mix(kScale[below], kScale[below + 1], at - static_cast<float>(below)));
+  }
+  return picture;
+}
+
 Image classPicture(const Image& classes) {
   Image picture(classes.width, classes.height, 3);
   for (std::size_t i = 0; i < picture.pixels(); ++i) {
@@ -104,21 +119,23 @@ std::vector<std::filesystem::path> writePictures(const std::filesystem::path& di
     if (kind == "reference") writePng(path, reference);
     if (kind == "error") writePng(path, signedErrorPicture(pictures.visibility, pictures.reference, pictures.mask));
     if (kind == "class") writePng(path, classPicture(pictures.classes));
+    if (kind == "work" && pictures.reads.pixels() > 0) writePng(path, workPicture(pictures.reads));
   }
   if (exr) {
     const glm::dvec3 camera = session.camera().position;
-    writeExr(paths.back(),
-             {{"visibility", pictures.visibility},
-              {"reference_a", pictures.reference.a},
-              {"reference_b", pictures.reference.b},
-              {"error", errorOf(pictures.visibility, pictures.reference)},
-              {"class", pictures.classes},
-              {"position.x", worldPositions(pictures.positions, camera, 0)},
-              {"position.y", worldPositions(pictures.positions, camera, 1)},
-              {"position.z", worldPositions(pictures.positions, camera, 2)},
-              {"normal.x", channelOf(pictures.normals, 0)},
-              {"normal.y", channelOf(pictures.normals, 1)},
-              {"normal.z", channelOf(pictures.normals, 2)}},
+    std::vector<NamedChannel> channels{{"visibility", pictures.visibility},
+                                       {"reference_a", pictures.reference.a},
+                                       {"reference_b", pictures.reference.b},
+                                       {"error", errorOf(pictures.visibility, pictures.reference)},
+                                       {"class", pictures.classes},
+                                       {"position.x", worldPositions(pictures.positions, camera, 0)},
+                                       {"position.y", worldPositions(pictures.positions, camera, 1)},
+                                       {"position.z", worldPositions(pictures.positions, camera, 2)},
+                                       {"normal.x", channelOf(pictures.normals, 0)},
+                                       {"normal.y", channelOf(pictures.normals, 1)},
+                                       {"normal.z", channelOf(pictures.normals, 2)}};
+    if (pictures.reads.pixels() > 0) channels.push_back({"work", pictures.reads});
+    writeExr(paths.back(), channels,
              {{"gnomon.light", writeObject(*lightTable(), &session.light()).dump()},
               {"gnomon.camera", writeObject(*cameraTable(), &session.camera()).dump()}});
   }

@@ -20,6 +20,13 @@ Image signedErrorPicture(const Image& technique, const ReferencePair& reference,
 /// Lit yellow, umbra dark blue, penumbra orange; the band brighter, the terminator darker; grey outside.
 Image classPicture(const Image& classes);
 
+/// Texels read for a pixel from which on the colour of workPicture is white.
+inline constexpr float kMostReads = 1000.0f;
+
+/// Texels read for each pixel, on one scale for all pictures: logarithmic, black for none, by blue, red and orange to white at
+/// kMostReads; its lightness rises all the way.
+Image workPicture(const Image& reads);
+
 /// The first three of four channels.
 Image colourOf(const Image& rgba);
 
@@ -31,6 +38,7 @@ struct JobPictures {
   const Image& classes;
   const Image& positions;  ///< relative to the camera
   const Image& normals;
+  const Image& reads;  ///< texels read for each pixel; empty: not known, and no picture of it
 };
 
 /// Where writePictures puts them: DIRECTORY/STEM_KIND.png for each of `kinds` (OutputChoice::images) and, with `exr`,
