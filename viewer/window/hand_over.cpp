@@ -100,8 +100,14 @@ void App::captureAll() {
       const Slot slot = *stage.entry(i).slot;
       const std::string stem = fmt::format("{}-{}", i + 1, technique.name());
       writePictures(folder, stem, {"shaded"}, true,
-                    {session.shaded(slot), session.visibility(slot), reference_->halves(), session.receiverMask(),
-                     reference_->classes(), session.positions(), session.normals(), {}},
+                    {session.shaded(slot),
+                     session.visibility(slot),
+                     reference_->halves(),
+                     session.receiverMask(),
+                     reference_->classes(),
+                     session.positions(),
+                     session.normals(),
+                     {}},
                     session);
       writeTextures(slot, stem, shared);
       ++written;
