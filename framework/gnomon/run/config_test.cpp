@@ -103,7 +103,7 @@ TEST(RunConfig, ImagesAndRegimesAreNames) {
             (std::vector<std::string>{
                 "runs/c.json: /output/images/0: unknown name \"shadde\"; did you mean \"shaded\"? allowed: shaded, visibility, "
                 "error, "
-                "class, reference",
+                "work, class, reference",
                 "runs/c.json: /measure/regimes/0: unknown name \"dynamics\"; did you mean \"dynamic\"? allowed: dynamic, "
                 "animated, camera, static",
                 "runs/c.json: /measure/frames: found 0; allowed: an integer from 1 to 100000"}));

@@ -65,7 +65,7 @@ void LightStage::renderReferences() {
   slice.note("technique", run.reference.name());
   slice.note("from", reference.fromCache ? "cache" : fmt::format("{} rays", reference.rays));
   const TraceSlice inMotion(options.trace, "reference in motion");
-  motion = renderMotionReference(by, registry, run, light, options.referenceCache);
+  motion = renderMotionReference(by, registry, run, light);
 }
 
 }  // namespace gnomon

@@ -23,8 +23,7 @@ void leaveOutside(Image& half, const Image& mask) {
 
 }  // namespace
 
-MotionReference renderMotionReference(Session& session, Registry& registry, const ResolvedRun& run, std::size_t light,
-                                      const std::filesystem::path& cache) {
+MotionReference renderMotionReference(Session& session, Registry& registry, const ResolvedRun& run, std::size_t light) {
   const ResolvedTechnique technique = copyOf(run.reference, registry);
   if (int* samples = reservedParameter(technique, "samples")) *samples = std::min(*samples, kSamples);
   const int frames = run.config.measure.shimmerFrames;
@@ -33,7 +32,7 @@ MotionReference renderMotionReference(Session& session, Registry& registry, cons
     RegimePath path(regime, run, light);
     for (int frame = 0; frame < frames; ++frame) {
       path.go(session, frame, frames);
-      ReferencePair& pair = halves.emplace_back(renderReference(session, registry, {technique, cache}).halves);
+      ReferencePair& pair = halves.emplace_back(renderReference(session, registry, {technique, {}}).halves);
       session.runShared();
       const Image mask = session.receiverMask();
       leaveOutside(pair.a, mask);

@@ -1,7 +1,6 @@
 // What a technique's error does while light and camera move: it should move with the shadow, and not flicker.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -17,10 +16,10 @@ struct MotionReference {
   std::vector<ReferencePair> light, camera;
 };
 
-/// As many frames a path as the config's measure.shimmer_frames; few rays each. The session is left at its nominal pose.
+/// As many frames a path as the config's measure.shimmer_frames; few rays each. Not cached: a dozen pictures a light would fill
+/// the cache for what takes a quarter of the reference's own time. The session is left at its nominal pose.
 /// Throws Error.
-MotionReference renderMotionReference(Session& session, Registry& registry, const ResolvedRun& run, std::size_t light,
-                                      const std::filesystem::path& cache);
+MotionReference renderMotionReference(Session& session, Registry& registry, const ResolvedRun& run, std::size_t light);
 
 /// ErrorSplits::shimmer over both paths, from each frame to the next and from the last to the first. Empty without frames. The
 /// session is left at its nominal pose.
