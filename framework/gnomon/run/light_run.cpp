@@ -11,6 +11,7 @@
 #include "gnomon/measure/error.h"
 #include "gnomon/run/job_time.h"
 #include "gnomon/run/job_work.h"
+#include "gnomon/run/perceived.h"
 #include "gnomon/run/pictures.h"
 #include "gnomon/run/shimmer.h"
 
@@ -70,6 +71,9 @@ struct LightRun::State : LightStage {
     record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
     record.splits = measureSplits({visibility, reference.halves.a, reference.halves.b, classes, receivers.positions,
                                    receivers.normals, nominal(), run.camera.position});
+    record.flip = traced("flip", [&] {
+      return flipFigures(hdrFlip(whitePicture(session, receivers, visibility), whiteReference), receivers.mask);
+    });
     JobWork work = traced("work", [&] { return measureWork(*this, slot, frame.technique.counters); });
     record.work = std::move(work.counters);
     if (record.reason.empty()) record.reason = work.uncounted;

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <optional>
 
+#include "gnomon/run/perceived.h"
+
 namespace gnomon {
 
 namespace {
@@ -49,6 +51,9 @@ LightStage::LightStage(const ResolvedRun& r, std::size_t l, Registry& g, LightRu
   session.runShared();
   receivers = receiverImages(session);
   classes = classesOf(session, receivers, reference.halves);
+  Image mean = reference.halves.a;
+  for (std::size_t i = 0; i < mean.data.size(); ++i) mean.data[i] = 0.5f * (mean.data[i] + reference.halves.b.data[i]);
+  whiteReference = whitePicture(session, receivers, mean);
 }
 
 void LightStage::renderReferences() {

@@ -20,6 +20,7 @@ struct LightStage {
   MotionReference motion;
   ReceiverImages receivers;
   Image classes;
+  Image whiteReference;  ///< whitePicture of the mean of the reference's halves
   MachineRecord machine;
 
   /// Renders or loads the references. Throws Error.

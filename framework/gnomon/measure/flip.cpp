@@ -1,0 +1,302 @@
+#include "gnomon/measure/flip.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "gnomon/base/error.h"
+#include "gnomon/base/statistics.h"
+
+namespace gnomon {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// --- colour --------------------------------------------------------------------------------------------------------------
+
+/// Linear RGB of sRGB's primaries to XYZ (IEC 61966-2-1); white is its D65.
+const glm::dmat3 kXyz = glm::transpose(
+    glm::dmat3(0.4124564, 0.3575761, 0.1804375, 0.2126729, 0.7151522, 0.0721750, 0.0193339, 0.1191920, 0.9503041));
+const glm::dmat3 kRgb = glm::inverse(kXyz);
+const glm::dvec3 kWhite = kXyz * glm::dvec3(1.0);
+
+/// Y, Cx, Cz: L*a*b* without its roots, so that filtering it is filtering light (section 3.1).
+glm::dvec3 opponent(const glm::dvec3& rgb) {
+  const glm::dvec3 n = kXyz * rgb / kWhite;
+  return {116.0 * n.y - 16.0, 500.0 * (n.x - n.y), 200.0 * (n.y - n.z)};
+}
+
+glm::dvec3 rgbOf(const glm::dvec3& yxz) {
+  const double y = (yxz.x + 16.0) / 116.0;
+  return kRgb * (glm::dvec3(y + yxz.y / 500.0, y, y - yxz.z / 200.0) * kWhite);
+}
+
+/// L*a*b*, its chroma less the darker the colour is (Hunt's effect, eq. 4).
+glm::dvec3 huntLab(const glm::dvec3& rgb) {
+  const glm::dvec3 n = kXyz * rgb / kWhite;
+  constexpr double delta = 6.0 / 29.0;
+  glm::dvec3 f;
+  for (int i = 0; i < 3; ++i) f[i] = n[i] > delta * delta * delta ? std::cbrt(n[i]) : n[i] / (3.0 * delta * delta) + 4.0 / 29.0;
+  const double lightness = 116.0 * f.y - 16.0;
+  return {lightness, 0.01 * lightness * 500.0 * (f.x - f.y), 0.01 * lightness * 200.0 * (f.y - f.z)};
+}
+
+/// HyAB: large differences add up as people add them (eq. 5).
+double hyab(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
+}
+
+constexpr double kColourExponent = 0.7;  // q_c
+constexpr double kBreak = 0.4;           // p_c, as a share of the greatest difference
+constexpr double kAtBreak = 0.95;        // p_t
+
+/// Differences up to the break get nearly all of [0,1] (eq. 6).
+double redistributed(double difference) {
+  static const double greatest = std::pow(hyab(huntLab({0.0, 1.0, 0.0}), huntLab({0.0, 0.0, 1.0})), kColourExponent);
+  const double d = std::pow(difference, kColourExponent);
+  const double at = kBreak * greatest;
+  if (d < at) return kAtBreak / at * d;
+  return std::min(1.0, kAtBreak + (d - at) / (greatest - at) * (1.0 - kAtBreak));
+}
+
+// --- filters -------------------------------------------------------------------------------------------------------------
+
+using Plane = std::vector<float>;
+using Kernel = std::vector<double>;  ///< of odd length, about its middle
+
+struct Size {
+  int width, height;
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+
+/// Along rows, then along columns; beyond its border a picture goes on as it ends.
+Plane filtered(const Plane& plane, Size size, const Kernel& alongX, const Kernel& alongY) {
+  const int radius = static_cast<int>(alongX.size() / 2);
+  Plane rows(size.pixels());
+  Plane padded(static_cast<std::size_t>(size.width + 2 * radius));
+  for (int y = 0; y < size.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width);
+    for (int x = -radius; x < size.width + radius; ++x)
+      padded[static_cast<std::size_t>(x + radius)] = plane[row + static_cast<std::size_t>(std::clamp(x, 0, size.width - 1))];
+    for (std::size_t k = 0; k < alongX.size(); ++k) {
+      const auto weight = static_cast<float>(alongX[k]);
+      for (std::size_t x = 0; x < static_cast<std::size_t>(size.width); ++x) rows[row + x] += weight * padded[x + k];
+    }
+  }
+  Plane result(size.pixels());
+  for (int y = 0; y < size.height; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width);
+    for (std::size_t k = 0; k < alongY.size(); ++k) {
+      const int from = std::clamp(y + static_cast<int>(k) - radius, 0, size.height - 1);
+      const std::size_t source = static_cast<std::size_t>(from) * static_cast<std::size_t>(size.width);
+      const auto weight = static_cast<float>(alongY[k]);
+      for (std::size_t x = 0; x < static_cast<std::size_t>(size.width); ++x) result[row + x] += weight * rows[source + x];
+    }
+  }
+  return result;
+}
+
+template <class Function>
+Kernel kernelOf(int radius, const Function& function) {
+  Kernel kernel;
+  for (int x = -radius; x <= radius; ++x) kernel.push_back(function(static_cast<double>(x)));
+  return kernel;
+}
+
+double sumOf(const Kernel& kernel) {
+  double sum = 0.0;
+  for (const double weight : kernel) sum += weight;
+  return sum;
+}
+
+Kernel scaled(Kernel kernel, double factor) {
+  for (double& weight : kernel) weight *= factor;
+  return kernel;
+}
+
+/// One of the Gaussians that a channel's contrast sensitivity is made of, in the frequency domain a exp(-b f^2), b in square
+/// degrees (table 1).
+struct Sensitivity {
+  double a, b;
+};
+constexpr Sensitivity kLuminance{1.0, 0.0047};
+constexpr Sensitivity kRedGreen{1.0, 0.0053};
+constexpr std::array<Sensitivity, 2> kBlueYellow{{{34.1, 0.04}, {13.5, 0.025}}};
+constexpr double kWidest = 0.04;
+
+/// What the eye makes of a channel at a distance: a sum of Gaussians that keeps constants (eq. 2 and 3).
+Plane seen(const Plane& plane, Size size, std::span<const Sensitivity> gaussians, double pixelsPerDegree) {
+  const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(kWidest / (2.0 * kPi * kPi)) * pixelsPerDegree));
+  Plane sum(size.pixels());
+  double total = 0.0;
+  for (const Sensitivity& each : gaussians) {
+    const Kernel kernel = kernelOf(radius, [&](double x) {
+      const double degrees = x / pixelsPerDegree;
+      return std::exp(-kPi * kPi * degrees * degrees / each.b);
+    });
+    const double weight = each.a * std::sqrt(kPi / each.b);
+    total += weight * sumOf(kernel) * sumOf(kernel);
+    const Plane part = filtered(plane, size, scaled(kernel, weight), kernel);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+  }
+  for (float& value : sum) value = static_cast<float>(static_cast<double>(value) / total);
+  return sum;
+}
+
+constexpr double kFeatureDegrees = 0.082;  // width of a line that the eye sees best: w
+constexpr double kFeatureExponent = 0.5;   // q_f
+
+/// Strength of edges and points in a picture's luminance, each a length per pixel (section 3.2).
+struct Features {
+  Plane edges, points;
+};
+
+Features featuresOf(const Plane& luminance, Size size, double pixelsPerDegree) {
+  const double sigma = 0.5 * kFeatureDegrees * pixelsPerDegree;
+  const int radius = static_cast<int>(std::ceil(3.0 * sigma));
+  const auto gaussian = [&](double x) { return std::exp(-x * x / (2.0 * sigma * sigma)); };
+  // Positive weights sum to 1, negative ones to -1: a step of 1 gives an edge of 1.
+  const auto balanced = [](Kernel kernel) {
+    double positive = 0.0;
+    double negative = 0.0;
+    for (const double weight : kernel) (weight > 0.0 ? positive : negative) += std::abs(weight);
+    for (double& weight : kernel) weight /= weight > 0.0 ? positive : std::max(negative, 1e-300);
+    return kernel;
+  };
+  Kernel smooth = kernelOf(radius, gaussian);
+  smooth = scaled(smooth, 1.0 / sumOf(smooth));
+  const Kernel first = balanced(kernelOf(radius, [&](double x) { return -x * gaussian(x); }));
+  const Kernel second = balanced(kernelOf(radius, [&](double x) { return (x * x / (sigma * sigma) - 1.0) * gaussian(x); }));
+  const auto lengths = [&](const Kernel& kernel) {
+    const Plane x = filtered(luminance, size, kernel, smooth);
+    const Plane y = filtered(luminance, size, smooth, kernel);
+    Plane length(size.pixels());
+    for (std::size_t i = 0; i < length.size(); ++i) length[i] = std::sqrt(x[i] * x[i] + y[i] * y[i]);
+    return length;
+  };
+  return {lengths(first), lengths(second)};
+}
+
+/// A picture as the comparison sees it.
+struct Seen {
+  std::vector<glm::dvec3> lab;
+  Features features;
+};
+
+Seen look(const Image& image, double pixelsPerDegree) {
+  const Size size{image.width, image.height};
+  std::array<Plane, 3> channels{Plane(size.pixels()), Plane(size.pixels()), Plane(size.pixels())};
+  Plane luminance(size.pixels());
+  for (std::size_t i = 0; i < size.pixels(); ++i) {
+    glm::dvec3 rgb(image.data[3 * i], image.data[3 * i + 1], image.data[3 * i + 2]);
+    if (!std::isfinite(rgb.x + rgb.y + rgb.z)) rgb = glm::dvec3(0.0);
+    const glm::dvec3 yxz = opponent(glm::clamp(rgb, 0.0, 1.0));
+    for (int c = 0; c < 3; ++c) channels[static_cast<std::size_t>(c)][i] = static_cast<float>(yxz[c]);
+    luminance[i] = static_cast<float>((yxz.x + 16.0) / 116.0);
+  }
+  const Plane y = seen(channels[0], size, {&kLuminance, 1}, pixelsPerDegree);
+  const Plane x = seen(channels[1], size, {&kRedGreen, 1}, pixelsPerDegree);
+  const Plane z = seen(channels[2], size, kBlueYellow, pixelsPerDegree);
+  Seen result{std::vector<glm::dvec3>(size.pixels()), featuresOf(luminance, size, pixelsPerDegree)};
+  for (std::size_t i = 0; i < size.pixels(); ++i) result.lab[i] = huntLab(glm::clamp(rgbOf({y[i], x[i], z[i]}), 0.0, 1.0));
+  return result;
+}
+
+void requireShapes(const Image& a, const Image& b) {
+  if (a.width == b.width && a.height == b.height && a.channels == 3 && b.channels == 3) return;
+  throw Error(fmt::format("flip: pictures are {}x{} with {} channels and {}x{} with {}; must be of one size, with 3", a.width,
+                          a.height, a.channels, b.width, b.height, b.channels));
+}
+
+// --- exposures -----------------------------------------------------------------------------------------------------------
+
+/// ACES as Narkowicz fitted it, with its pre-exposure of 0.6: (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5).
+constexpr double k0 = 0.36 * 2.51, k1 = 0.6 * 0.03, k3 = 0.36 * 2.43, k4 = 0.6 * 0.59, k5 = 0.14;
+constexpr double kShownAt = 0.85;  // where the tone mapper begins to saturate
+
+double toneMapped(double x) {
+  return std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0);
+}
+
+/// What the tone mapper shows at kShownAt.
+double shownAtBreak() {
+  const double a = k0 - kShownAt * k3;
+  const double b = k1 - kShownAt * k4;
+  const double c = -kShownAt * k5;
+  return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
+}
+
+Image exposed(const Image& image, double stops) {
+  Image result = image;
+  for (float& value : result.data) {
+    if (std::isfinite(value)) value = static_cast<float>(toneMapped(std::max(0.0, std::exp2(stops) * value)));
+  }
+  return result;
+}
+
+}  // namespace
+
+Image ldrFlip(const Image& a, const Image& b, double pixelsPerDegree) {
+  requireShapes(a, b);
+  const Seen first = look(a, pixelsPerDegree);
+  const Seen second = look(b, pixelsPerDegree);
+  Image flip(a.width, a.height);
+  for (std::size_t i = 0; i < flip.pixels(); ++i) {
+    const double colour = redistributed(hyab(first.lab[i], second.lab[i]));
+    const double edge = std::abs(first.features.edges[i] - second.features.edges[i]);
+    const double point = std::abs(first.features.points[i] - second.features.points[i]);
+    const double feature = std::min(1.0, std::pow(std::max(edge, point) / std::numbers::sqrt2, kFeatureExponent));
+    flip.data[i] = static_cast<float>(std::pow(colour, 1.0 - feature));
+    float sum = 0.0f;
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) sum += a.data[c] + b.data[c];
+    if (!std::isfinite(sum)) flip.data[i] = 1.0f;
+  }
+  return flip;
+}
+
+FlipExposures flipExposures(const Image& reference) {
+  std::vector<double> luminances;
+  for (std::size_t i = 0; i < reference.pixels(); ++i) {
+    const glm::dvec3 rgb(reference.data[3 * i], reference.data[3 * i + 1], reference.data[3 * i + 2]);
+    const double y = (kXyz * rgb).y;
+    if (std::isfinite(y)) luminances.push_back(std::max(y, 1e-6));  // a median of black would ask for endless exposure
+  }
+  if (luminances.empty()) return {};
+  const double brightest = *std::max_element(luminances.begin(), luminances.end());
+  FlipExposures exposures{std::log2(shownAtBreak() / brightest), std::log2(shownAtBreak() / median(luminances)), 2};
+  exposures.count = std::max(2, static_cast<int>(std::ceil(exposures.stop - exposures.start)));
+  return exposures;
+}
+
+Image hdrFlip(const Image& technique, const Image& reference, double pixelsPerDegree) {
+  requireShapes(technique, reference);
+  const FlipExposures exposures = flipExposures(reference);
+  Image greatest(reference.width, reference.height);
+  for (int i = 0; i < exposures.count; ++i) {
+    const double stops = exposures.start + (exposures.stop - exposures.start) * i / (exposures.count - 1);
+    const Image flip = ldrFlip(exposed(technique, stops), exposed(reference, stops), pixelsPerDegree);
+    for (std::size_t p = 0; p < flip.pixels(); ++p) greatest.data[p] = std::max(greatest.data[p], flip.data[p]);
+  }
+  return greatest;
+}
+
+FlipFigures flipFigures(const Image& flip, const Image& mask) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < flip.pixels(); ++i) {
+    if (mask.data[i] > 0.5f) values.push_back(flip.data[i]);
+  }
+  if (values.empty()) return {};
+  return {mean(values), percentile(values, 99.0)};
+}
+
+}  // namespace gnomon
