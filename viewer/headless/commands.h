@@ -67,6 +67,8 @@ int checkCommand(const CommonOptions& common, const CheckOptions& options);
 std::vector<std::filesystem::path> runRepeats(const CommonOptions& common, const RenderOptions& options, Clock timer);
 /// 1 where anything got worse, or, of what should be the same, where anything differs.
 int compareCommand(const CommonOptions& common, const CompareOptions& options);
+/// Writes the page of a folder of results; an empty `page`: report.html in it.
+int reportCommand(const std::filesystem::path& results, const std::filesystem::path& page, bool images);
 /// Writes the folder `in`/`name`.
 int newTechniqueCommand(const CommonOptions& common, const std::string& name, const std::filesystem::path& in);
 

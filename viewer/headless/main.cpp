@@ -43,6 +43,9 @@ int run(int argc, char** argv) {
   std::filesystem::path config;
   std::filesystem::path schemaDirectory;
   std::filesystem::path newFolder;
+  std::filesystem::path resultsFolder;
+  std::filesystem::path pageFile;
+  bool withImages = true;
   int exitCode = 0;
 
   const auto addCommon = [&](CLI::App* command, bool needsGpu) {
@@ -130,6 +133,12 @@ int run(int argc, char** argv) {
   comparing->add_flag("--json", common.json, "for programs");
   comparing->footer("Exit codes: 0 nothing is worse (with --same: nothing differs), 1 something is, 2 bad usage or input.");
   comparing->callback([&] { exitCode = compareCommand(common, compare); });
+
+  CLI::App* reporting = app.add_subcommand("report", "one page that shows what accuracy costs, made of a folder of results");
+  reporting->add_option("results", resultsFolder, "folder that a batch wrote")->required();
+  reporting->add_option("--out", pageFile, "the page; without it, report.html in that folder");
+  reporting->add_flag("!--no-images", withImages, "without pictures of the jobs: a small page");
+  reporting->callback([&] { exitCode = reportCommand(resultsFolder, pageFile, withImages); });
 
   CLI::App* starting = app.add_subcommand("new-technique", "writes a plugin that builds and runs, with one test to fill in");
   addCommon(starting, false);
