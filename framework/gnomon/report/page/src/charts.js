@@ -49,13 +49,31 @@ function plotOf(points, jobs, error, cost, width, title, onJob) {
                         symbol: (p) => p.job.technique, r: 5, className: "points", ariaLabel: (p) => describe(p, error, cost),
                         title: (p) => tipOf(p, error, cost), tip: {maxRadius: 30, fill: "var(--paper)", stroke: "var(--line)"}}),
       Plot.line(stepsOf(front, {top: ys[1], right: xs[1]}), {x: "x", y: "y", stroke: "currentColor", strokeWidth: 1.2, className: "front"}),
-      Plot.text(front, {x: "x", y: "y", text: (p) => p.job.label, dx: 8, dy: -9, textAnchor: "start", fill: "currentColor",
-                        stroke: "var(--paper)", strokeWidth: 4, className: "names"}),
+      ...["start", "end"].map((anchor) => Plot.text(namesOf(front, xs, ys, width).filter((name) => name.anchor === anchor), {
+        x: "x", y: "y", text: "text", dx: anchor === "start" ? 8 : -8, dy: -10, textAnchor: anchor, fill: "currentColor",
+        stroke: "var(--paper)", strokeWidth: 4, className: "names"})),
     ],
   });
   makeChoosable(chart, points, error, cost, onJob);
   const legend = element("p", {class: "legend"}, techniques.map((name, i) => element("span", {}, mark(i), name)));
   return element("div", {}, legend, chart);
+}
+
+/** Names of the front's points that do not run into one another, the cheapest first; those near the right end lie left. */
+function namesOf(front, xs, ys, width) {
+  const letter = 6.4;
+  const place = (value, [low, high], extent) => Math.log(value / low) / Math.log(high / low) * extent;
+  const boxes = [];
+  return front.flatMap((point) => {
+    const text = point.job.label;
+    const x = place(point.x, xs, width - 82);
+    const y = place(point.y, ys, 340);
+    const anchor = x + letter * text.length > width - 82 ? "end" : "start";
+    const box = {left: anchor === "start" ? x : x - letter * text.length, right: anchor === "start" ? x + letter * text.length : x, y};
+    if (boxes.some((b) => Math.abs(b.y - y) < 15 && b.left < box.right && box.left < b.right)) return [];
+    boxes.push(box);
+    return [{x: point.x, y: point.y, text, anchor}];
+  });
 }
 
 /** Points are buttons: by mouse, by Enter and by space. */

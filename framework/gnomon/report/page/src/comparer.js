@@ -19,7 +19,6 @@ class Comparer {
     this.page = page;
     this.jobs = jobs;
     this.kind = kinds[0];
-    this.sides = [{title: jobs[0].label, job: jobs[0]}, {title: "reference", job: null}];
     this.view = {scale: 1, x: 0, y: 0};
     this.exposure = 0;
     this.split = 0.5;
@@ -30,7 +29,9 @@ class Comparer {
 
   handle() {
     this.options = [...this.jobs.map((job) => ({title: job.label, job})), {title: "reference", job: null}];
-    this.sides = [this.options[0], this.options.at(-1)];
+    const errorOf = (option) => option.job?.error?.rmse ?? Infinity;
+    const best = this.options.reduce((a, b) => (errorOf(b) < errorOf(a) ? b : a));
+    this.sides = [best, this.options.at(-1)];
     this.main = this.canvas("comparer");
     this.small = kinds.map((kind) => ({kind, canvas: this.canvas("small")}));
     this.readout = element("output", {class: "readout", "aria-live": "off"}, "Move over a picture to read its numbers.");

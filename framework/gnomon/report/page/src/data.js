@@ -33,6 +33,7 @@ function nameJobs(jobs) {
 export function valueText(value) {
   if (value === null || value === undefined) return "–";
   if (Array.isArray(value)) return value.map(valueText).join(" × ");
+  if (Number.isInteger(value)) return String(value);
   if (typeof value === "number") return numberText(value);
   return String(value);
 }

@@ -1,0 +1,12 @@
+# A small batch, its page, and the page in a browser.
+file(REMOVE_RECURSE ${OUT})
+file(MAKE_DIRECTORY ${OUT})
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE complained)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${ARGN} ended with ${status}:\n${said}\n${complained}")
+  endif()
+endfunction()
+run(${GNOMON} batch ${CONFIG} --out ${OUT}/results)
+run(${GNOMON} report ${OUT}/results)
+run(${NODE} ${PAGE}/test/browser.mjs ${PACKAGES} ${OUT}/results/report.html ${OUT})
