@@ -198,6 +198,10 @@ const FrameReport& Session::frame(Slot slot, const GraphRun& options) {
 Image Session::visibility(Slot slot) const {
   return readTexture(visibilityTexture(slot));
 }
+std::optional<Image> Session::statistics(Slot slot) const {
+  const auto& statistics = state_->single(slot, "has no statistics; ask for those of one of its slots").statistics;
+  return statistics ? std::optional(readTexture(*statistics)) : std::nullopt;
+}
 Image Session::shaded(Slot slot) const {
   return readTexture(shadedTexture(slot));
 }

@@ -118,6 +118,8 @@ class Session {
 
   /// Of the last frame: V, one channel. Throws Error for a sum, which has none.
   Image visibility(Slot slot) const;
+  /// Of the last frame: standard error of V and V_cos, two channels (Outputs::statistics); none where the technique gives none.
+  std::optional<Image> statistics(Slot slot) const;
   /// Of the last frame: linear RGBA.
   Image shaded(Slot slot) const;
   /// The same, where they lie, and what throws.

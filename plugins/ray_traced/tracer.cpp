@@ -19,9 +19,6 @@ double largestComponent(const glm::dvec3& v) {
 /// Metres beyond which a source counts as infinitely far: squares of larger floats come near their range's end.
 constexpr double kFarthest = 1e17;
 
-/// Half a unit in the last place of a float, relative.
-constexpr double kRoundoff = 0.5 * 1.1920929e-7;
-
 }  // namespace
 
 Tracer::Tracer() : device_(rtcNewDevice(nullptr)) {
@@ -39,6 +36,7 @@ void Tracer::build(const Scene& scene, const std::optional<glm::dvec3>& source) 
   scene_.reset(rtcNewScene(device_.get()));
   rtcSetSceneFlags(scene_.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   magnitudes_.assign(scene.instances.size(), {});
+  triangles_.clear();
   for (std::uint32_t id = 0; id < scene.instances.size(); ++id) {
     const Instance& instance = scene.instances[id];
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -63,6 +61,10 @@ void Tracer::build(const Scene& scene, const std::optional<glm::dvec3>& source) 
     if (to == nullptr || indices == nullptr) throw Error("no memory for the acceleration structure");
     std::copy(vertices.begin(), vertices.end(), to);
     std::copy(mesh.indices.begin(), mesh.indices.begin() + static_cast<std::ptrdiff_t>(3 * mesh.triangles()), indices);
+    for (std::uint32_t t = 0; t < mesh.triangles(); ++t) {
+      const std::uint32_t* corner = &mesh.indices[3 * std::size_t{t}];
+      triangles_.push_back({{vertices[corner[0]], vertices[corner[1]], vertices[corner[2]]}, id, t});
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, id);
     rtcReleaseGeometry(geometry);
@@ -82,8 +84,7 @@ ShadowRays::ShadowRays(const Tracer& tracer) : tracer_(tracer) {
   context_.base.filter = &ShadowRays::rejectOwnTriangle;
 }
 
-void ShadowRays::start(const Receiver& receiver, float& visibility) {
-  counts_.push_back({&visibility});
+void ShadowRays::start(const Receiver& receiver) {
   instance_ = receiver.instance;
   triangle_ = receiver.triangle;
   normal_ = receiver.normal;
@@ -96,23 +97,25 @@ void ShadowRays::start(const Receiver& receiver, float& visibility) {
   origin_ = position + normal_ * error;
 }
 
-void ShadowRays::add(const glm::dvec3& sample, bool direction) {
+void ShadowRays::add(const glm::dvec3& sample, bool direction, double solidAngle, Tally& tally) {
   const glm::dvec3 towards = direction ? sample : sample - tracer_.origin() - origin_;
   const double reach = largestComponent(towards);
   if (!(glm::dot(normal_, towards) > 0.0) || !std::isfinite(reach)) return;
-  ++counts_.back().rays;
+  const Owner owner{&tally, solidAngle * glm::dot(normal_, glm::normalize(towards / reach))};
+  ++tally.rays;
+  tally.all += owner.weight;
   if (direction || reach > kFarthest) {
-    push(origin_, towards, true);
+    push(origin_, towards, true, owner);
   } else if (tracer_.halvesRays()) {
-    push(origin_, 0.5 * towards, false);
-    push(sample - tracer_.origin(), -0.5 * towards, false);
+    push(origin_, 0.5 * towards, false, owner);
+    push(sample - tracer_.origin(), -0.5 * towards, false, owner);
   } else {
-    push(origin_, towards, false);
+    push(origin_, towards, false, owner);
   }
   if (filled_ == kWidth) flush();
 }
 
-void ShadowRays::push(const glm::dvec3& origin, const glm::dvec3& towards, bool endless) {
+void ShadowRays::push(const glm::dvec3& origin, const glm::dvec3& towards, bool endless, const Owner& owner) {
   const std::size_t lane = filled_++;
   rays_.org_x[lane] = static_cast<float>(origin.x);
   rays_.org_y[lane] = static_cast<float>(origin.y);
@@ -132,7 +135,7 @@ void ShadowRays::push(const glm::dvec3& origin, const glm::dvec3& towards, bool 
   rays_.id[lane] = static_cast<unsigned>(lane);
   context_.instance[lane] = instance_;
   context_.triangle[lane] = triangle_;
-  owner_[lane] = counts_.size() - 1;
+  owner_[lane] = owner;
 }
 
 void ShadowRays::flush() {
@@ -157,18 +160,14 @@ void ShadowRays::flush() {
   const auto blocked = [&](std::size_t lane) { return rays_.tfar[lane] < 0.0f; };  // Embree marks it by -inf
   const std::size_t step = tracer_.halvesRays() ? 2 : 1;
   for (std::size_t lane = 0; lane < filled_; lane += step) {
-    if (blocked(lane) || blocked(lane + step - 1)) ++counts_[owner_[lane]].blocked;
+    const Owner& owner = owner_[lane];
+    if (blocked(lane) || blocked(lane + step - 1)) {
+      ++owner.tally->blocked;
+    } else {
+      owner.tally->seen += owner.weight;
+    }
   }
   filled_ = 0;
-}
-
-void ShadowRays::finish() {
-  flush();
-  for (const Count& count : counts_) {
-    *count.visibility =
-        count.rays == 0 ? 1.0f : static_cast<float>(count.rays - count.blocked) / static_cast<float>(count.rays);
-  }
-  counts_.clear();
 }
 
 void ShadowRays::rejectOwnTriangle(const RTCFilterFunctionNArguments* arguments) {

@@ -62,10 +62,10 @@ TEST_F(CachedReference, TheSecondRunReadsIt) {
   ASSERT_EQ(files().size(), 1U);
   // A reference that no tracer would render: if the figures follow it, the file was read and nothing was traced.
   const std::string key = keyIn(readFile(onlyFile()));
-  ReferencePair pair = loadReference(cache_, key).value();
-  std::fill(pair.a.data.begin(), pair.a.data.end(), 0.5f);
-  std::fill(pair.b.data.begin(), pair.b.data.end(), 0.5f);
-  storeReference(cache_, key, pair);
+  KeptReference kept = loadReference(cache_, key).value();
+  std::fill(kept.halves.a.data.begin(), kept.halves.a.data.end(), 0.5f);
+  std::fill(kept.halves.b.data.begin(), kept.halves.b.data.end(), 0.5f);
+  storeReference(cache_, key, kept);
   const Json figures = render();
   EXPECT_EQ(figures["classes"]["penumbra"]["share"], 1.0);
 }

@@ -107,6 +107,8 @@ void App::captureAll() {
                      reference_->classes(),
                      session.positions(),
                      session.normals(),
+                     {},
+                     {},
                      {}},
                     session);
       writeTextures(slot, stem, shared);

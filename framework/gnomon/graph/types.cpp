@@ -71,6 +71,7 @@ FrameCounters& FrameCounters::operator+=(const FrameCounters& other) {
   texelsWritten += other.texelsWritten;
   bytesWritten += other.bytesWritten;
   rays += other.rays;
+  raysSaved += other.raysSaved;
   return *this;
 }
 
@@ -81,7 +82,8 @@ FrameCounters FrameCounters::operator-(const FrameCounters& earlier) const {
           .primitives = primitives - earlier.primitives,
           .texelsWritten = texelsWritten - earlier.texelsWritten,
           .bytesWritten = bytesWritten - earlier.bytesWritten,
-          .rays = rays - earlier.rays};
+          .rays = rays - earlier.rays,
+          .raysSaved = raysSaved - earlier.raysSaved};
 }
 
 }  // namespace gnomon

@@ -103,6 +103,7 @@ struct FrameCounters {
   std::uint64_t texelsWritten = 0;  ///< by full-screen and cpu passes; raster passes by their target's size
   std::uint64_t bytesWritten = 0;   ///< of those texels
   std::uint64_t rays = 0;
+  std::uint64_t raysSaved = 0;  ///< that a technique with a fixed number of rays would have traced
 
   FrameCounters& operator+=(const FrameCounters& other);
   FrameCounters operator-(const FrameCounters& earlier) const;

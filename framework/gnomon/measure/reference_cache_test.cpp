@@ -32,12 +32,19 @@ class ReferenceCache : public ::testing::Test {
     log::setLevel(log::Level::info);
   }
 
-  static ReferencePair pair() {
-    ReferencePair result{Image(5, 3), Image(5, 3)};
-    for (std::size_t i = 0; i < result.a.data.size(); ++i) {
-      result.a.data[i] = static_cast<float>(i) / 7.0f;
-      result.b.data[i] = 1.0f - result.a.data[i];
+  static KeptReference pair() {
+    KeptReference result{{Image(5, 3), Image(5, 3)}, {}, {}, 70'000'000'000, 12};
+    ReferencePair& halves = result.halves;
+    for (std::size_t i = 0; i < halves.a.data.size(); ++i) {
+      halves.a.data[i] = static_cast<float>(i) / 7.0f;
+      halves.b.data[i] = 1.0f - halves.a.data[i];
     }
+    return result;
+  }
+  static KeptReference withStatistics() {
+    KeptReference result = pair();
+    result.standardError = Image(5, 3, 1, 0.01f);
+    result.cosineVisibility = Image(5, 3, 1, 0.3f);
     return result;
   }
   std::string storedBytes() const { return readFile(referenceFile(folder_, kKey)); }
@@ -55,16 +62,27 @@ std::vector<std::uint32_t> bitsOf(const Image& image) {
 }
 
 TEST_F(ReferenceCache, GivesBackTheSameBits) {
-  ReferencePair kept = pair();
-  kept.a.at(2, 1) = -0.0f;
-  kept.b.at(2, 1) = std::numeric_limits<float>::quiet_NaN();
+  KeptReference kept = pair();
+  kept.halves.a.at(2, 1) = -0.0f;
+  kept.halves.b.at(2, 1) = std::numeric_limits<float>::quiet_NaN();
   storeReference(folder_, kKey, kept);
   const auto loaded = loadReference(folder_, kKey);
   ASSERT_TRUE(loaded.has_value());
-  EXPECT_EQ(loaded->a.width, 5);
-  EXPECT_EQ(loaded->a.height, 3);
-  EXPECT_EQ(bitsOf(loaded->a), bitsOf(kept.a));
-  EXPECT_EQ(bitsOf(loaded->b), bitsOf(kept.b));
+  EXPECT_EQ(loaded->halves.a.width, 5);
+  EXPECT_EQ(loaded->halves.a.height, 3);
+  EXPECT_EQ(bitsOf(loaded->halves.a), bitsOf(kept.halves.a));
+  EXPECT_EQ(bitsOf(loaded->halves.b), bitsOf(kept.halves.b));
+  EXPECT_EQ(loaded->standardError.pixels(), 0U);
+  EXPECT_EQ(loaded->rays, kept.rays);
+  EXPECT_EQ(loaded->raysSaved, kept.raysSaved);
+}
+
+TEST_F(ReferenceCache, GivesBackWhatTheReferenceTellsOfItself) {
+  storeReference(folder_, kKey, withStatistics());
+  const auto loaded = loadReference(folder_, kKey);
+  ASSERT_TRUE(loaded.has_value());
+  EXPECT_EQ(bitsOf(loaded->standardError), bitsOf(withStatistics().standardError));
+  EXPECT_EQ(bitsOf(loaded->cosineVisibility), bitsOf(withStatistics().cosineVisibility));
 }
 
 TEST_F(ReferenceCache, HasNothingBeforeAnythingIsStored) {
@@ -118,10 +136,19 @@ std::string forged(std::string bytes, std::size_t offset, std::uint32_t value) {
 TEST_F(ReferenceCache, SizesThatDoNotFitAreRefusedBeforeAnythingIsAllocated) {
   storeReference(folder_, kKey, pair());
   const std::string good = storedBytes();
-  const std::size_t widthOffset = 8 + 4 + 4 + kKey.size();
+  const std::size_t widthOffset = 8 + 4 + 4 + kKey.size() + 2 * 8;
   for (const std::uint32_t width : {0u, 4u, 6u, 0x40000000u, 0xffffffffu}) {
     replace(forged(good, widthOffset, width));
     EXPECT_FALSE(loadReference(folder_, kKey).has_value()) << width;
+  }
+}
+
+TEST_F(ReferenceCache, ANumberOfPicturesThatDoesNotFitIsRefused) {
+  storeReference(folder_, kKey, pair());
+  for (const std::uint32_t pictures : {0u, 1u, 3u, 4u, 0xffffffffu}) {
+    replace(forged(storedBytes(), 8 + 4 + 4 + kKey.size() + 2 * 8 + 2 * 4, pictures));
+    EXPECT_FALSE(loadReference(folder_, kKey).has_value()) << pictures;
+    storeReference(folder_, kKey, pair());
   }
 }
 
@@ -133,7 +160,7 @@ TEST_F(ReferenceCache, AKeyLengthBeyondTheFileIsRefused) {
 
 TEST_F(ReferenceCache, AnotherVersionIsRefused) {
   storeReference(folder_, kKey, pair());
-  replace(forged(storedBytes(), 8, 2));
+  replace(forged(storedBytes(), 8, 1));
   EXPECT_FALSE(loadReference(folder_, kKey).has_value());
 }
 
@@ -145,7 +172,8 @@ TEST_F(ReferenceCache, ADamagedFileIsReplacedByTheNextStore) {
 }
 
 TEST_F(ReferenceCache, HalvesOfTwoSizesAreAnError) {
-  EXPECT_THROW(storeReference(folder_, kKey, {Image(2, 2), Image(2, 3)}), Error);
+  EXPECT_THROW(storeReference(folder_, kKey, {{Image(2, 2), Image(2, 3)}, {}, {}}), Error);
+  EXPECT_THROW(storeReference(folder_, kKey, {{Image(2, 2), Image(2, 2)}, Image(2, 2), Image(2, 3)}), Error);
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ struct LightRun::State : LightStage {
   }
 
   void judge(JobRecord& record, Slot slot, const Image& visibility, const FrameReport& frame) {
+    record.reference = referenceRecord;
     record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
     record.splits = measureSplits({visibility, reference.halves.a, reference.halves.b, classes, receivers.positions,
                                    receivers.normals, nominal(), run.camera.position});
@@ -82,7 +83,7 @@ struct LightRun::State : LightStage {
       const Image shaded = session.shaded(slot);
       writePictures(options.imageDirectory, record.job, run.config.output.images, options.exr,
                     {shaded, visibility, reference.halves, receivers.mask, classes, receivers.positions, receivers.normals,
-                     work.pixelReads},
+                     work.pixelReads, reference.standardError, reference.cosineVisibility},
                     session);
     }
     record.splits->shimmer = traced("shimmer", [&] { return measureShimmer(session, slot, run, light, motion); });

@@ -17,6 +17,7 @@ struct LightStage {
   LightRunOptions options;
   Session session;
   RenderedReference reference;  ///< as all below but the machine: nothing where only times are measured
+  ReferenceRecord referenceRecord;
   MotionReference motion;
   ReceiverImages receivers;
   Image classes;

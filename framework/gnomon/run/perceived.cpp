@@ -15,13 +15,11 @@ Image whitePicture(const Session& session, const ReceiverImages& receivers, cons
   const Light& light = session.light();
   const LightFrame axes = lightFrame(light);
   const std::vector<float>& positions = receivers.positions.data;
-  const std::vector<float>& normals = receivers.normals.data;
   Image picture(visibility.width, visibility.height, 3);
   for (std::size_t i = 0; i < picture.pixels(); ++i) {
     const float kind = positions[4 * i + 3];  // 1 receiver, 0.5 receives nothing
     if (kind == 0.0f) continue;
-    const glm::dvec3 p = session.camera().position + glm::dvec3(positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]);
-    const glm::dvec3 n(normals[4 * i], normals[4 * i + 1], normals[4 * i + 2]);
+    const auto [p, n] = surfacePoint(session, receivers, i);
     const double cosine = std::max(glm::dot(n, towardsCentre(light, axes, p)), 0.0);
     const bool isUnshadowed = kind == 0.5f && inReach(light, axes, p);
     const double v = receivers.mask.data[i] > 0.5f ? static_cast<double>(visibility.data[i]) : isUnshadowed ? 1.0 : 0.0;

@@ -134,7 +134,12 @@ std::vector<std::filesystem::path> writePictures(const std::filesystem::path& di
                                        {"normal.x", channelOf(pictures.normals, 0)},
                                        {"normal.y", channelOf(pictures.normals, 1)},
                                        {"normal.z", channelOf(pictures.normals, 2)}};
-    if (pictures.reads.pixels() > 0) channels.push_back({"work", pictures.reads});
+    const auto addKnown = [&](const std::string& name, const Image& picture) {
+      if (picture.pixels() > 0) channels.push_back({name, picture});
+    };
+    addKnown("work", pictures.reads);
+    addKnown("reference_error", pictures.standardError);
+    addKnown("reference_cosine", pictures.cosineVisibility);
     writeExr(paths.back(), channels,
              {{"gnomon.light", writeObject(*lightTable(), &session.light()).dump()},
               {"gnomon.camera", writeObject(*cameraTable(), &session.camera()).dump()}});

@@ -38,7 +38,9 @@ struct JobPictures {
   const Image& classes;
   const Image& positions;  ///< relative to the camera
   const Image& normals;
-  const Image& reads;  ///< texels read for each pixel; empty: not known, and no picture of it
+  const Image& reads;             ///< texels read for each pixel; empty: not known, and no picture of it
+  const Image& standardError;     ///< of the reference; empty: not known
+  const Image& cosineVisibility;  ///< V_cos of the reference; empty: not known
 };
 
 /// Where writePictures puts them: DIRECTORY/STEM_KIND.png for each of `kinds` (OutputChoice::images) and, with `exr`,

@@ -177,6 +177,12 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
   return run;
 }
 
+/// The parameter's value; null when the technique has none of that name and type.
+void* reserved(const ResolvedTechnique& technique, const std::string& name, FieldType type) {
+  const Field* field = technique.technique.entry->parameters->find(name);
+  return field != nullptr && field->type == type ? field->make(technique.parameters.get()) : nullptr;
+}
+
 }  // namespace
 
 std::vector<const Entry*> entriesOf(const ResolvedRun& run) {
@@ -197,9 +203,13 @@ std::vector<ResolvedRun> resolveRuns(const std::filesystem::path& path, Registry
 }
 
 int* reservedParameter(const ResolvedTechnique& technique, const std::string& name) {
-  const Field* field = technique.technique.entry->parameters->find(name);
-  if (field == nullptr || field->type != FieldType::integer) return nullptr;
-  return static_cast<int*>(field->make(technique.parameters.get()));
+  return static_cast<int*>(reserved(technique, name, FieldType::integer));
+}
+double* reservedReal(const ResolvedTechnique& technique, const std::string& name) {
+  return static_cast<double*>(reserved(technique, name, FieldType::real64));
+}
+bool* reservedFlag(const ResolvedTechnique& technique, const std::string& name) {
+  return static_cast<bool*>(reserved(technique, name, FieldType::boolean));
 }
 
 ResolvedTechnique copyOf(const ResolvedTechnique& technique, Registry& registry) {

@@ -55,6 +55,10 @@ std::vector<ResolvedRun> resolveRuns(const std::filesystem::path& path, Registry
 /// The technique's reserved integer parameter `name` ("seed", "samples"), or null when its table has none.
 int* reservedParameter(const ResolvedTechnique& technique, const std::string& name);
 
+/// The same of a real one ("standard_error") and of a boolean one ("statistics").
+double* reservedReal(const ResolvedTechnique& technique, const std::string& name);
+bool* reservedFlag(const ResolvedTechnique& technique, const std::string& name);
+
 /// A copy whose parameters can be changed apart.
 ResolvedTechnique copyOf(const ResolvedTechnique& technique, Registry& registry);
 

@@ -140,6 +140,16 @@ glm::dvec3 sampleSource(const Light& light, const LightFrame& frame, glm::dvec2 
   return frame.origin + frame.x * p.x + frame.y * p.y;
 }
 
+double solidAngleWeight(const Light& light, const LightFrame& frame, const glm::dvec3& sample, const glm::dvec3& receiver) {
+  if (light.type != LightType::spot) return 1.0;  // sampled by solid angle
+  const glm::dvec3 towards = sample - receiver;
+  const double distance = glm::length(towards);
+  // dA cos / d^2, with distances relative to the centre's, so that no unit of length overflows.
+  const double nearness = glm::length(frame.origin - receiver) / distance;
+  const double weight = glm::dot(towards / distance, frame.z) * nearness * nearness;
+  return std::isfinite(weight) ? std::max(weight, 0.0) : 0.0;
+}
+
 glm::dvec3 towardsCentre(const Light& light, const LightFrame& frame, const glm::dvec3& receiver) {
   if (light.type == LightType::directional) return frame.z;
   const glm::dvec3 towards = frame.origin - receiver;

@@ -57,6 +57,10 @@ double sourceDiameter(const Light& light);
 /// for directional lights, the unit direction towards the light.
 glm::dvec3 sampleSource(const Light& light, const LightFrame& frame, glm::dvec2 u, const glm::dvec3& receiver);
 
+/// Solid angle that a point of sampleSource (a position, or a direction) stands for, up to a factor that all points of the
+/// source share for this receiver: sums of it over samples make means over solid angle out of V's own measure. Finite, >= 0.
+double solidAngleWeight(const Light& light, const LightFrame& frame, const glm::dvec3& sample, const glm::dvec3& receiver);
+
 /// Unit vector from `receiver` towards the source's centre.
 glm::dvec3 towardsCentre(const Light& light, const LightFrame& frame, const glm::dvec3& receiver);
 

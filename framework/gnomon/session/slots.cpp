@@ -77,6 +77,10 @@ void Session::State::setUpTechnique(SlotState& slot, const OpenTechnique& techni
   requireVisibility(slot.visibility->info);
   std::vector<Texture> kept{outputs.visibility};
   if (outputs.admissible) kept.push_back(*outputs.admissible);
+  if (outputs.statistics) {
+    slot.statistics = slot.graph->resource(*outputs.statistics);
+    kept.push_back(*outputs.statistics);
+  }
   slot.graph->compile(kept);
   requireDeclared(*slot.entry, *slot.defences);
 }

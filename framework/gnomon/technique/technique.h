@@ -50,6 +50,9 @@ struct Outputs {
   Texture visibility;  ///< r16f or r32f, the output's size, V in [0,1]; 1 outside the receiver mask
   std::optional<Texture> admissible =
       {};  ///< r8: 1 where a technique claims to be valid; reported apart, never shrinks the mask
+  /// rg32f, of a reference whose parameter `statistics` is on. Red: the standard error of V, an upper estimate. Green: V_cos,
+  /// the share of N.w over the solid angle of the source that the visible part holds, in [0,1]; 1 where no direction counts.
+  std::optional<Texture> statistics = {};
 };
 
 /// A technique is made with a reference to its parameters and keeps that reference: they are the session's copy, outlive the
