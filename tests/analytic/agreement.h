@@ -48,9 +48,11 @@ struct Agreement {
   double offsetPValue = 1.0;  ///< of "it is 0"
 };
 
-/// Family-wise significance of the points' tests, and significance of slope and of offset: all three hold of a right technique
-/// with a probability of 0.997.
-inline constexpr double kSignificance = 1e-3;
+/// Agreements that are expected in this folder, rounded up.
+inline constexpr double kFamily = 20.0;
+/// Of each agreement's three tests: of all its points together (Holm), of the slope and of the offset. That any of the folder's
+/// tests rejects a right technique has then a probability of at most 1e-3.
+inline constexpr double kSignificance = 1e-3 / (3.0 * kFamily);
 
 /// `runs` are independent scrambles of `samples` samples each.
 inline Agreement agreement(std::span<const Estimates> runs, std::span<const double> truth, int samples) {

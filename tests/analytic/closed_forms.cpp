@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -86,6 +87,28 @@ double square(glm::dvec2 receiver, double side, glm::dvec2 centre, double blocke
               const SourceAxis& sourceY) {
   const auto along = [&](double middle) { return Strip{blockerHeight, {middle - 0.5 * side, middle + 0.5 * side}}; };
   return 1.0 - blockedFraction(receiver.x, along(centre.x), sourceX) * blockedFraction(receiver.y, along(centre.y), sourceY);
+}
+
+double sphereOnAxis(double sphereRadius, double sphereHeight, double sourceHeight, double sourceRadius) {
+  const double rim = sourceHeight * sphereRadius / std::sqrt(sphereHeight * sphereHeight - sphereRadius * sphereRadius);
+  return 1.0 - std::min(1.0, rim * rim / (sourceRadius * sourceRadius));
+}
+
+double halfPlaneCone(double axisBehindEdge, double halfAngle) {
+  if (axisBehindEdge >= halfAngle) return 0.0;
+  if (axisBehindEdge <= -halfAngle) return 1.0;
+  const double lune = std::acos(std::sin(axisBehindEdge) / std::sin(halfAngle));
+  const double rim = std::acos(std::tan(axisBehindEdge) / std::tan(halfAngle));
+  return (lune - std::cos(halfAngle) * rim) / (std::numbers::pi * (1.0 - std::cos(halfAngle)));
+}
+
+double axisBehindEdge(double receiver, double edge, double edgeHeight, const glm::dvec3& axis) {
+  const glm::dvec2 towardsLit(edgeHeight, receiver - edge);  // in x and y, across the plane through receiver and edge
+  return -std::asin(glm::dot(towardsLit / glm::length(towardsLit), glm::dvec2(axis)));
+}
+
+double directionalPenumbraWidth(double edgeHeight, double diameter) {
+  return 2.0 * edgeHeight * std::tan(0.5 * diameter);
 }
 
 double boxFilteredStep(double x, double edge, double width) {

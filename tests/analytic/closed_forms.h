@@ -5,6 +5,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <span>
 
 namespace gnomon::closed_form {
@@ -60,6 +61,19 @@ double stripsProbabilistic(double receiver, std::span<const Strip> blockers, con
 /// A.5: rectangular source, square blocker of `side` about `centre`.
 double square(glm::dvec2 receiver, double side, glm::dvec2 centre, double blockerHeight, const SourceAxis& sourceX,
               const SourceAxis& sourceY);
+
+/// A.6: disc source of the radius R, a sphere of radius r about the height h (r < h) on the disc's axis, a receiver on it too:
+/// the sphere's rim is seen as a circle of the radius H r / sqrt(h^2 - r^2).
+double sphereOnAxis(double sphereRadius, double sphereHeight, double sourceHeight, double sourceRadius);
+
+/// A half-plane's edge before a cone of directions, uniform in solid angle: a sphere, or the disc of a directional light.
+/// `halfAngle` in (0, pi/2), `axisBehindEdge` the signed angle from the plane through receiver and edge to the cone's axis,
+/// positive where the axis is blocked; radians.
+double halfPlaneCone(double axisBehindEdge, double halfAngle);
+/// The angle for an edge along the second lateral axis, solid for x < edge, and a cone about `axis` (unit; y is up).
+double axisBehindEdge(double receiver, double edge, double edgeHeight, const glm::dvec3& axis);
+/// A.7: width of the penumbra under a light straight above of the angular diameter `diameter` (radians): 2 h tan(d / 2).
+double directionalPenumbraWidth(double edgeHeight, double diameter);
 
 /// A hard step at `edge`, lit above it, averaged over a box of `width` (> 0) about x.
 double boxFilteredStep(double x, double edge, double width);

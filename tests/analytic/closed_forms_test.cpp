@@ -138,6 +138,56 @@ TEST(ClosedForms, SquareHasAnUmbraWhenItsImageCoversTheSource) {  // s H/h >= a
   EXPECT_GT(square({0.0, 0.0}, 0.39, {0.0, 0.0}, 2.0, source, source), 0.0);
 }
 
+TEST(ClosedForms, SphereOnTheAxis) {  // by the tangent from the receiver: sin(angle) = r / h
+  const double rim = 5.0 * std::tan(std::asin(0.3 / 2.0));
+  EXPECT_NEAR(sphereOnAxis(0.3, 2.0, 5.0, 1.1), 1.0 - rim * rim / (1.1 * 1.1), 1e-12);
+  EXPECT_EQ(sphereOnAxis(0.3, 2.0, 5.0, 0.7), 0.0);
+}
+
+TEST(ClosedForms, HalfPlaneBeforeACone) {
+  // Directions at equal steps of height and of turn are uniform in solid angle.
+  constexpr double half = 0.6;
+  const glm::dvec3 axis = glm::normalize(glm::dvec3(0.2, 1.0, 0.1));
+  const glm::dvec3 u = glm::normalize(glm::cross(axis, glm::dvec3(0.0, 0.0, 1.0)));
+  const glm::dvec3 v = glm::cross(axis, u);
+  for (const double x : kReceivers) {
+    int visible = 0;
+    for (int j = 0; j < kGrid; ++j) {
+      const double z = 1.0 - (1.0 - std::cos(half)) * (j + 0.5) / kGrid;
+      for (int i = 0; i < kGrid; ++i) {
+        const double turn = 2.0 * 3.141592653589793 * (i + 0.5) / kGrid;
+        const glm::dvec3 direction = axis * z + std::sqrt(1.0 - z * z) * (u * std::cos(turn) + v * std::sin(turn));
+        visible += x + direction.x * (2.0 / direction.y) >= 0.1 ? 1 : 0;
+      }
+    }
+    EXPECT_NEAR(halfPlaneCone(axisBehindEdge(x, 0.1, 2.0, axis), half), static_cast<double>(visible) / (kGrid * kGrid),
+                kTolerance)
+        << x;
+  }
+}
+
+TEST(ClosedForms, ConeOfASmallAngleIsADisc) {
+  constexpr double half = 1e-3;
+  const double radius = kHeight * std::tan(half);
+  for (const double t : {-0.9, -0.3, 0.0, 0.5, 0.99}) {
+    const double x = -t * radius * 2.0 / (kHeight - 2.0);  // the edge at 0 falls at t on the source
+    EXPECT_NEAR(halfPlaneCone(axisBehindEdge(x, 0.0, 2.0, glm::normalize(glm::dvec3(-x, kHeight, 0.0))), half),
+                halfPlaneDisc(x, 0.0, 2.0, {kHeight, 0.0, 2.0 * radius}), 1e-5)
+        << t;
+  }
+}
+
+TEST(ClosedForms, DirectionalPenumbraEndsWhereTheConeDoes) {
+  constexpr double diameter = 0.2;
+  const double width = directionalPenumbraWidth(2.0, diameter);
+  const auto at = [&](double x) { return halfPlaneCone(axisBehindEdge(x, 0.1, 2.0, {0.0, 1.0, 0.0}), 0.5 * diameter); };
+  EXPECT_EQ(at(0.1 - 0.501 * width), 0.0);
+  EXPECT_GT(at(0.1 - 0.499 * width), 0.0);
+  EXPECT_LT(at(0.1 + 0.499 * width), 1.0);
+  EXPECT_EQ(at(0.1 + 0.501 * width), 1.0);
+  EXPECT_NEAR(at(0.1), 0.5, 1e-12);
+}
+
 TEST(ClosedForms, BoxFilteredStepIsTheMeanOfTheStep) {
   for (const double x : {-2.0, -0.9, 0.0, 0.3, 1.4, 3.0}) {
     int lit = 0;
