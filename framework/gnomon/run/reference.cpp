@@ -97,7 +97,7 @@ class MaskRms {
   const Image& mask_;
 };
 
-/// Points of the source that the unshadowed integral is taken at: it is smooth but for the horizon.
+/// Points of the source that the integral without blockers is taken at: it is smooth but for the horizon.
 constexpr std::uint32_t kCosineSamples = 64;
 
 /// Mean of N.w over the solid angle of the whole source, directions below the horizon as 0.

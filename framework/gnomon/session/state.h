@@ -60,7 +60,7 @@ struct SlotState {
   Buffer block;                  ///< the uniform ones of `parameters`
   std::shared_ptr<TextureResource> visibility;
   std::shared_ptr<TextureResource> statistics;  ///< null: the technique gives none
-  std::vector<std::size_t> summed;  ///< indices of a sum's slots; empty: no sum
+  std::vector<std::size_t> summed;              ///< indices of a sum's slots; empty: no sum
   Shading shading;
   FrameReport report;  ///< kept, so that frames take no memory
   JoinedReport joined;
