@@ -23,7 +23,8 @@ Estimate estimateOf(std::span<const Tally> runs) {
   }
   const auto n = static_cast<double>(runs.size());
   const double variance = std::max(0.0, squares - sum * sum / n) / (n - 1.0);
-  return {all.visibility(), all.weightedVisibility(), n < 2.0 ? 0.5 : std::sqrt(variance / n)};
+  const double least = all.rays == 0 ? 0.0 : 0.5 / all.rays;
+  return {all.visibility(), all.weightedVisibility(), n < 2.0 ? 0.5 : std::max(std::sqrt(variance / n), least)};
 }
 
 Adaptive::Adaptive(std::uint32_t seed, int most, double target)
@@ -53,15 +54,11 @@ Tally& Adaptive::tally(std::size_t sequence, int sample) {
 }
 
 void Adaptive::decide() {
-  // Runs that all agree have no spread, but what lies between two samples may hide 1/samples of the source: where half of that
-  // is seen in every second picture, the standard error is half a step.
-  const double leastError = 0.5 / samples_;
-  std::array<double, 2> errors{};
-  for (std::size_t s = 0; s < 2; ++s) errors[s] = std::max(estimateOf(sequences_[s].runs).standardError, leastError);
+  const std::array<Estimate, 2> now{estimateOf(sequences_[0].runs), estimateOf(sequences_[1].runs)};
   for (std::size_t s = 0; s < 2; ++s) {
     Sequence& sequence = sequences_[s];
-    if (sequence.isTaken || (errors[1 - s] > target_ && samples_ < most_)) continue;
-    sequence.taken = estimateOf(sequence.runs);
+    if (sequence.isTaken || (now[1 - s].standardError > target_ && samples_ < most_)) continue;
+    sequence.taken = now[s];
     sequence.isTaken = true;
   }
 }

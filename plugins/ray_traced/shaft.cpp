@@ -96,35 +96,48 @@ bool Shaft::misses(const glm::dvec3& centre, const glm::dvec3& half) const {
   });
 }
 
+std::optional<Shaft::Sides> Shaft::sidesOf(const CasterTriangle& triangle) const {
+  std::array<glm::dvec3, 3> v{};
+  for (std::size_t k = 0; k < 3; ++k) v[k] = glm::dvec3(triangle.corners[k]) - apex_;
+  const glm::dvec3 across = glm::cross(v[1] - v[0], v[2] - v[0]);
+  const double volume = glm::dot(across, v[0]);
+  Sides sides{{}, std::abs(volume) / glm::length(across)};
+  if (!(sides.distance > rounding_)) return std::nullopt;  // or the triangle is none
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 side = glm::cross(v[k], v[(k + 1) % 3]);
+    sides.normals[k] = side * ((volume < 0.0 ? -1.0 : 1.0) / glm::length(side));
+  }
+  return sides;
+}
+
 bool Shaft::misses(const CasterTriangle& triangle) const {
-  return std::any_of(planes_.begin(), planes_.end(), [&](const Plane& plane) {
+  const bool isOutside = std::any_of(planes_.begin(), planes_.end(), [&](const Plane& plane) {
     return std::all_of(triangle.corners.begin(), triangle.corners.end(), [&](const glm::vec3& corner) {
       return glm::dot(plane.normal, glm::dvec3(corner) - apex_) + plane.offset < -rounding_;
     });
   });
+  if (isOutside) return true;
+  const std::optional<Sides> sides = sidesOf(triangle);
+  return sides && std::any_of(sides->normals.begin(), sides->normals.end(), [&](const glm::dvec3& inwards) {
+           return std::all_of(corners_.begin(), corners_.end(), [&](const glm::dvec3& corner) {
+             return glm::dot(inwards, corner) * sides->distance < -rounding_;
+           });
+         });
 }
 
 bool Shaft::isStoppedBy(const CasterTriangle& triangle) const {
   if (!allAboveHorizon_) return false;  // a receiver none of whose rays count is lit
-  std::array<glm::dvec3, 3> v{};
-  double distance = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < 3; ++k) {
-    v[k] = glm::dvec3(triangle.corners[k]) - apex_;
-    const double depth = glm::dot(axis_, v[k]);
-    if (!(depth > rounding_ && depth < nearest_ - rounding_)) return false;
-    distance = std::min(distance, depth);
-  }
+  const bool isBetween = std::all_of(triangle.corners.begin(), triangle.corners.end(), [&](const glm::vec3& corner) {
+    const double depth = glm::dot(axis_, glm::dvec3(corner) - apex_);
+    return depth > rounding_ && depth < nearest_ - rounding_;
+  });
+  const std::optional<Sides> sides = isBetween ? sidesOf(triangle) : std::nullopt;
   // The source lies in the cone from the apex through the triangle if its corners do: both are convex.
-  for (std::size_t k = 0; k < 3; ++k) {
-    const glm::dvec3 side = glm::cross(v[k], v[(k + 1) % 3]);
-    const double length = glm::length(side);
-    if (!(length > 0.0)) return false;
-    const glm::dvec3 inwards = side * ((glm::dot(side, v[(k + 2) % 3]) < 0.0 ? -1.0 : 1.0) / length);
-    for (const glm::dvec3& corner : corners_) {
-      if (!(glm::dot(inwards, corner) * distance > rounding_)) return false;
-    }
-  }
-  return true;
+  return sides && std::all_of(sides->normals.begin(), sides->normals.end(), [&](const glm::dvec3& inwards) {
+           return std::all_of(corners_.begin(), corners_.end(), [&](const glm::dvec3& corner) {
+             return glm::dot(inwards, corner) * sides->distance > rounding_;
+           });
+         });
 }
 
 struct ShaftTree::Node {

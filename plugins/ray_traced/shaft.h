@@ -37,6 +37,12 @@ class Shaft {
     glm::dvec3 normal;  ///< unit, inwards
     double offset;      ///< of normal . (p - apex)
   };
+  /// Between the triangle's edges and the apex; unit, inwards. None where the apex lies in the triangle's plane.
+  struct Sides {
+    std::array<glm::dvec3, 3> normals;
+    double distance;  ///< of the triangle's plane from the apex
+  };
+  std::optional<Sides> sidesOf(const CasterTriangle& triangle) const;
   glm::dvec3 apex_{0.0};
   glm::dvec3 axis_{0.0};
   double nearest_ = 0.0;  ///< depth along the axis at which the source begins
