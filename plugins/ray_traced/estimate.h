@@ -20,9 +20,10 @@ struct Estimate {
 
 /// Into how many runs a pixel's samples are split for their standard error. Runs of a power of two of samples, from a multiple
 /// of it on, are nets of their own; together they are a finer one, more even than independent runs would be. Their spread is
-/// therefore an upper estimate: by 8^(1/4) = 1.7 times across one straight edge, by nothing where V varies finely.
-/// Runs that all agree have no spread, but what lies between two of n samples may hide 1/n of the source: where half of that is
-/// seen in every second picture, the standard error is half a step, 1/(2n). It is never said to be less.
+/// therefore an upper estimate: by 8^(1/4) = 1.7 times across a straight edge, by 8^(1/2) = 2.8 along an axis of the source, by
+/// nothing where V varies finely. Runs that all agree have no spread, but what lies between two of n samples may hide 1/n of
+/// the source: where half of that is seen in every second picture, the standard error is half a step, 1/(2n). It is never said
+/// to be less.
 inline constexpr std::size_t kRuns = 8;
 
 /// Of runs of equally many samples each. A single run has no spread: its standard error is 1/2, the most there is.

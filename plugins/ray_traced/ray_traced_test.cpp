@@ -122,6 +122,18 @@ INSTANTIATE_TEST_SUITE_P(RayTraced, BruteForce, testing::Values("sphere_grid", "
 
 // Rays
 
+TEST(RayTraced, BuildsOverTheCastersTrianglesAndNoOthers) {
+  SessionSetup setup = builtinSetup("pillars", {16, 12});
+  setup.scene.instances.back().casts = false;
+  std::uint64_t triangles = 0;
+  for (const Instance& instance : setup.scene.instances) {
+    if (instance.casts) triangles += setup.scene.meshes[instance.mesh].indices.size() / 3;
+  }
+  Session session(std::move(setup));
+  const Slot slot = addSlot(session, "ray_traced");
+  EXPECT_EQ(session.frame(slot).technique.counters.primitives, triangles);
+}
+
 TEST(RayTraced, CastsOneRayAReceiverWithoutExtent) {
   const Traced traced = trace(pointSetup(), 64);
   EXPECT_EQ(traced.rays, traced.points.size());
