@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "closed_forms.h"
@@ -14,6 +15,7 @@
 #include "gnomon/run/reference.h"
 #include "gnomon/scene/builtin_dimensions.h"
 #include "render.h"
+#include "temporary_folder.h"
 
 namespace gnomon::test {
 namespace {
@@ -154,6 +156,30 @@ TEST(ReferenceRecord, AdaptiveStandardErrorIsTheOneThatWasAskedFor) {
   const float greatest = *std::max_element(error.data.begin(), error.data.end());
   EXPECT_LE(greatest, 2.0 * target);
   EXPECT_GE(greatest, 0.5 * target);  // no more rays than needed
+}
+
+/// The reference of a run config, its parameters those.
+Json parametersOfReference(const std::string& parameters) {
+  const TemporaryFolder folder;
+  folder.write("run.json", fmt::format(R"({{"scene": {{"builtin": "square"}}, "techniques": [{{"technique": "pcf"}}],
+                                            "reference": {{"technique": "ray_traced", "parameters": {}}}}})",
+                                       parameters));
+  Problems problems;
+  const std::vector<ResolvedRun> runs = resolveRuns(folder / "run.json", registry(), problems);
+  problems.throwIfAny();
+  return runs.at(0).reference.parametersJson();
+}
+
+TEST(ReferenceOfARunConfig, StopsEarlyUnlessANumberOfSamplesWasAskedFor) {
+  const Json usual = parametersOfReference("{}");
+  EXPECT_EQ(usual.at("samples"), 4096);
+  EXPECT_EQ(usual.at("standard_error"), 0.0025);
+  const Json fixed = parametersOfReference(R"({"samples": 64})");
+  EXPECT_EQ(fixed.at("samples"), 64);
+  EXPECT_EQ(fixed.at("standard_error"), 0.0);
+  const Json coarse = parametersOfReference(R"({"standard_error": 0.05})");
+  EXPECT_EQ(coarse.at("samples"), 4096);
+  EXPECT_EQ(coarse.at("standard_error"), 0.05);
 }
 
 TEST(ReferenceRecord, CosineFloorOfAnEmptySceneIsThatOfTheSourcesShape) {

@@ -11,8 +11,10 @@ namespace gnomon {
 
 namespace {
 
-/// Of the reference, in two halves, unless the config says otherwise.
-constexpr int kReferenceSamples = 1024;
+/// Of the reference, both halves together, unless the config says otherwise: rays a pixel at most, and the standard error of V
+/// at which a pixel needs no more of them.
+constexpr int kReferenceSamples = 4096;
+constexpr double kReferenceStandardError = 0.0025;
 
 /// Reports, as InputError, a name that no node with a mesh bears.
 void checkNode(const Scene& scene, const std::string& name, const Location& where) {
@@ -155,8 +157,14 @@ ResolvedRun resolveScene(const RunConfig& config, std::size_t index, Registry& r
   run.reference = withRole(TechniqueRole::reference, config.reference, "reference");
   if (run.reference.technique.entry != nullptr) {
     int* samples = reservedParameter(run.reference, "samples");
-    const bool chosen = config.reference && config.reference->parameters && config.reference->parameters->contains("samples");
-    if (samples != nullptr && !chosen) *samples = kReferenceSamples;
+    const auto isChosen = [&](const char* key) {
+      return config.reference && config.reference->parameters && config.reference->parameters->contains(key);
+    };
+    if (!isChosen("samples")) {  // who asks for a number of samples gets them
+      if (samples != nullptr) *samples = kReferenceSamples;
+      double* target = reservedReal(run.reference, "standard_error");
+      if (target != nullptr && !isChosen("standard_error")) *target = kReferenceStandardError;
+    }
     if (samples != nullptr && *samples < 2) {
       problems.add(file, "/reference/parameters/samples",
                    "found 1; allowed: 2 or more, since the reference is rendered as two halves");
