@@ -43,7 +43,7 @@ export function numberText(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e9 || size < 1e-4) return value.toExponential(digits - 1);
+  if (size >= 1e12 || size < 1e-4) return value.toExponential(digits - 1);
   if (size >= 1000) return Math.round(value).toLocaleString("en").replaceAll(",", "\u202f");
   return Number(value.toPrecision(digits)).toString();
 }

@@ -64,14 +64,22 @@ function sectionOf(section, index) {
     element("h2", {}, titleOf(section)), words, controls, charts,
     element("h3", {}, "Pictures"), pictures.root,
     element("h3", {}, "All jobs"), jobsTable(section.jobs, onJob),
-    passBars(section.jobs, onJob), classShares(section.jobs), floorNote(section), troubleTable(section.jobs), planTable(section.jobs));
+    passBars(section.jobs, onJob), classShares(section.jobs), referenceNote(section), troubleTable(section.jobs), planTable(section.jobs));
   return {root, draw};
 }
 
-function floorNote(section) {
+/** What the reference is worth, what it took, and what even the right visibility gets wrong. */
+function referenceNote(section) {
+  const sentences = [];
   const floors = section.jobs.map((job) => job.error?.noise_floor).filter((v) => v > 0);
-  if (floors.length === 0) return null;
-  return element("p", {class: "note"}, `Noise of the reference: ${numberText(Math.max(...floors))}. Nothing below it is told apart.`);
+  if (floors.length > 0) sentences.push(`Noise of the reference: ${numberText(Math.max(...floors))}. Nothing below it is told apart.`);
+  const {rays, rays_saved: saved, cosine_floor: cosineFloor} = section.jobs.find((job) => job.reference)?.reference ?? {};
+  if (rays > 0) sentences.push(`It took ${numberText(rays)} rays${saved > 0 ? ` and could do without ${numberText(saved)} more` : ""}.`);
+  if (cosineFloor > 0) {
+    sentences.push(`A picture shaded with its visibility and the light's centre is off by ${numberText(cosineFloor)} from one with the ` +
+      "exact integral over the source: no technique of visibility gets below that.");
+  }
+  return sentences.length > 0 ? element("p", {class: "note"}, sentences.join(" ")) : null;
 }
 
 const made = sections.map(sectionOf);

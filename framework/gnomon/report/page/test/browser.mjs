@@ -32,6 +32,13 @@ try {
   // A chart has its table, with a row a mark.
   assert.equal(await page.$$eval("[data-cost=ms] tbody tr", (rows) => rows.length), drawable.length);
 
+  // What the reference took and is worth stands below.
+  const reference = data.records.find((r) => r.reference?.rays > 0).reference;
+  const note = await page.locator("section").first().locator("p.note", {hasText: "reference"}).first().textContent();
+  assert.equal(/It took [\d\s]+ rays/.test(note), true, note);
+  assert.equal(/could do without/.test(note), reference.rays_saved > 0, note);
+  assert.equal(/exact integral/.test(note), reference.cosine_floor > 0, note);
+
   // A click on a mark, and Enter on another, open their pictures.
   const drawn = async (change) => {
     const before = await page.getAttribute(".comparison", "data-drawn");
