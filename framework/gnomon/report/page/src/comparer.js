@@ -38,15 +38,16 @@ class Comparer {
     this.slider = element("input", {type: "range", min: "0", max: "1000", value: "500", class: "divider", "aria-label": "divider between left and right",
                                     input: () => this.moveDivider(this.slider.value / 1000)});
     this.controls = element("div", {class: "controls"});
+    this.printed = element("p", {class: "printed"});  // paper shows no controls
     this.legend = element("div", {class: "scale"});
     this.root = element("div", {class: "comparison", tabindex: "0", role: "group", "aria-label": "comparer. " + help,
                                 keydown: (event) => this.key(event)},
-      this.controls,
+      this.controls, this.printed,
       element("div", {class: "stage"}, this.main, this.slider),
       this.legend, this.readout,
       element("div", {class: "smalls"}, this.small.map(({kind, canvas}) =>
         element("figure", {}, canvas, element("figcaption", {}, `${kind.title} of the left one`)))),
-      element("p", {class: "note"}, help));
+      element("p", {class: "note keys"}, help));
     for (const canvas of [this.main, ...this.small.map((s) => s.canvas)]) this.listen(canvas);
     this.refresh();
     return {root: this.root, show: (job) => this.show(job), state: this};
@@ -73,6 +74,7 @@ class Comparer {
     this.root.dataset.left = this.sides[0].job?.job ?? "reference";
     this.root.dataset.right = this.sides[1].job?.job ?? "reference";
     this.root.dataset.kind = this.kind.key;
+    this.printed.textContent = `Left ${this.sides[0].title}, right ${this.sides[1].title}: ${this.kind.title}.`;
     const stops = Array.from({length: 33}, (_, i) => `rgb(${this.kind.at(i / 32).map(Math.round).join(",")})`);
     this.legend.replaceChildren(element("span", {}, this.kind.legend[0]),
       element("span", {class: "gradient", style: `background:linear-gradient(to right,${stops.join(",")})`}),
