@@ -9,11 +9,13 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
 
 #include "gnomon/base/error.h"
+#include "gnomon/base/parallel.h"
 #include "gnomon/base/statistics.h"
 
 namespace gnomon {
@@ -187,11 +189,18 @@ Features featuresOf(const Plane& luminance, Size size, double pixelsPerDegree) {
   return {lengths(first), lengths(second)};
 }
 
-/// A picture as the comparison sees it.
+/// A picture as the comparison sees it. `lab` is NaN where the picture is not finite.
 struct Seen {
-  std::vector<glm::dvec3> lab;
+  std::vector<glm::vec3> lab;
   Features features;
 };
+
+/// Rounding leaves this much chroma in greys, of 500.
+constexpr float kGrey = 1e-6f;
+
+bool isGrey(const Plane& chroma) {
+  return std::all_of(chroma.begin(), chroma.end(), [](float c) { return std::abs(c) < kGrey; });
+}
 
 Seen look(const Image& image, double pixelsPerDegree) {
   const Size size{image.width, image.height};
@@ -205,17 +214,35 @@ Seen look(const Image& image, double pixelsPerDegree) {
     luminance[i] = static_cast<float>((yxz.x + 16.0) / 116.0);
   }
   const Plane y = seen(channels[0], size, {&kLuminance, 1}, pixelsPerDegree);
-  const Plane x = seen(channels[1], size, {&kRedGreen, 1}, pixelsPerDegree);
-  const Plane z = seen(channels[2], size, kBlueYellow, pixelsPerDegree);
-  Seen result{std::vector<glm::dvec3>(size.pixels()), featuresOf(luminance, size, pixelsPerDegree)};
-  for (std::size_t i = 0; i < size.pixels(); ++i) result.lab[i] = huntLab(glm::clamp(rgbOf({y[i], x[i], z[i]}), 0.0, 1.0));
+  const bool isColoured = !isGrey(channels[1]) || !isGrey(channels[2]);  // what our pictures are not
+  const Plane x = isColoured ? seen(channels[1], size, {&kRedGreen, 1}, pixelsPerDegree) : channels[1];
+  const Plane z = isColoured ? seen(channels[2], size, kBlueYellow, pixelsPerDegree) : channels[2];
+  Seen result{std::vector<glm::vec3>(size.pixels()), featuresOf(luminance, size, pixelsPerDegree)};
+  for (std::size_t i = 0; i < size.pixels(); ++i) {
+    const bool isFinite = std::isfinite(image.data[3 * i] + image.data[3 * i + 1] + image.data[3 * i + 2]);
+    result.lab[i] = isFinite ? huntLab(glm::clamp(rgbOf({y[i], x[i], z[i]}), 0.0, 1.0))
+                             : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+  }
   return result;
 }
 
-void requireShapes(const Image& a, const Image& b) {
-  if (a.width == b.width && a.height == b.height && a.channels == 3 && b.channels == 3) return;
-  throw Error(fmt::format("flip: pictures are {}x{} with {} channels and {}x{} with {}; must be of one size, with 3", a.width,
-                          a.height, a.channels, b.width, b.height, b.channels));
+Image compared(const Seen& a, const Seen& b, Size size) {
+  Image flip(size.width, size.height);
+  for (std::size_t i = 0; i < flip.pixels(); ++i) {
+    const double edge = std::abs(a.features.edges[i] - b.features.edges[i]);
+    const double point = std::abs(a.features.points[i] - b.features.points[i]);
+    if (a.lab[i] == b.lab[i] && edge == 0.0 && point == 0.0) continue;  // most pixels
+    const double colour = redistributed(hyab(a.lab[i], b.lab[i]));
+    const double feature = std::min(1.0, std::pow(std::max(edge, point) / std::numbers::sqrt2, kFeatureExponent));
+    flip.data[i] = std::isnan(colour) ? 1.0f : static_cast<float>(std::pow(colour, 1.0 - feature));
+  }
+  return flip;
+}
+
+void requireShape(const Image& image, Size size) {
+  if (image.width == size.width && image.height == size.height && image.channels == 3) return;
+  throw Error(fmt::format("flip: a picture is {}x{} with {} channels; must be {}x{} with 3", image.width, image.height,
+                          image.channels, size.width, size.height));
 }
 
 // --- exposures -----------------------------------------------------------------------------------------------------------
@@ -247,21 +274,10 @@ Image exposed(const Image& image, double stops) {
 }  // namespace
 
 Image ldrFlip(const Image& a, const Image& b, double pixelsPerDegree) {
-  requireShapes(a, b);
-  const Seen first = look(a, pixelsPerDegree);
-  const Seen second = look(b, pixelsPerDegree);
-  Image flip(a.width, a.height);
-  for (std::size_t i = 0; i < flip.pixels(); ++i) {
-    const double colour = redistributed(hyab(first.lab[i], second.lab[i]));
-    const double edge = std::abs(first.features.edges[i] - second.features.edges[i]);
-    const double point = std::abs(first.features.points[i] - second.features.points[i]);
-    const double feature = std::min(1.0, std::pow(std::max(edge, point) / std::numbers::sqrt2, kFeatureExponent));
-    flip.data[i] = static_cast<float>(std::pow(colour, 1.0 - feature));
-    float sum = 0.0f;
-    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) sum += a.data[c] + b.data[c];
-    if (!std::isfinite(sum)) flip.data[i] = 1.0f;
-  }
-  return flip;
+  const Size size{a.width, a.height};
+  requireShape(a, size);
+  requireShape(b, size);
+  return compared(look(a, pixelsPerDegree), look(b, pixelsPerDegree), size);
 }
 
 FlipExposures flipExposures(const Image& reference) {
@@ -278,13 +294,38 @@ FlipExposures flipExposures(const Image& reference) {
   return exposures;
 }
 
-Image hdrFlip(const Image& technique, const Image& reference, double pixelsPerDegree) {
-  requireShapes(technique, reference);
-  const FlipExposures exposures = flipExposures(reference);
-  Image greatest(reference.width, reference.height);
-  for (int i = 0; i < exposures.count; ++i) {
-    const double stops = exposures.start + (exposures.stop - exposures.start) * i / (exposures.count - 1);
-    const Image flip = ldrFlip(exposed(technique, stops), exposed(reference, stops), pixelsPerDegree);
+struct HdrFlip::State {
+  Size size;
+  double pixelsPerDegree;
+  FlipExposures exposures;
+  std::vector<Seen> reference;  ///< each exposure
+
+  Seen lookAt(const Image& image, std::size_t exposure) const {
+    const double share = static_cast<double>(exposure) / (exposures.count - 1);
+    return look(exposed(image, std::lerp(exposures.start, exposures.stop, share)), pixelsPerDegree);
+  }
+};
+
+HdrFlip::HdrFlip(const Image& reference, double pixelsPerDegree) {
+  const Size size{reference.width, reference.height};
+  requireShape(reference, size);
+  auto state = std::make_unique<State>(State{size, pixelsPerDegree, flipExposures(reference), {}});
+  state->reference.resize(static_cast<std::size_t>(state->exposures.count));
+  parallelFor(state->reference.size(), [&](std::size_t i) { state->reference[i] = state->lookAt(reference, i); });
+  state_ = std::move(state);
+}
+HdrFlip::HdrFlip(HdrFlip&&) noexcept = default;
+HdrFlip& HdrFlip::operator=(HdrFlip&&) noexcept = default;
+HdrFlip::~HdrFlip() = default;
+
+Image HdrFlip::operator()(const Image& technique) const {
+  requireShape(technique, state_->size);
+  std::vector<Image> flips(state_->reference.size());
+  parallelFor(flips.size(),
+              [&](std::size_t i) { flips[i] = compared(state_->lookAt(technique, i), state_->reference[i], state_->size); });
+  Image greatest = std::move(flips.front());
+  for (std::size_t i = 1; i < flips.size(); ++i) {
+    const Image& flip = flips[i];
     for (std::size_t p = 0; p < flip.pixels(); ++p) greatest.data[p] = std::max(greatest.data[p], flip.data[p]);
   }
   return greatest;

@@ -1,6 +1,7 @@
 // FLIP: how visible the difference of two pictures is when they are flipped between.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "gnomon/base/image.h"
@@ -35,8 +36,21 @@ struct FlipExposures {
 /// Visualizing Errors in Rendered High Dynamic Range Images, Eurographics 2021, section 4).
 FlipExposures flipExposures(const Image& reference);
 
-/// HDR-FLIP: the greatest LDR-FLIP of the pictures' tone-mapped exposures (ACES), pixel by pixel.
-Image hdrFlip(const Image& technique, const Image& reference, double pixelsPerDegree = kFlipPixelsPerDegree);
+/// HDR-FLIP: the greatest LDR-FLIP of the pictures' tone-mapped exposures (ACES), pixel by pixel. One reference for many
+/// techniques is looked at once: it keeps 20 bytes a pixel and exposure.
+class HdrFlip {
+ public:
+  /// Throws Error where the reference has not three channels.
+  explicit HdrFlip(const Image& reference, double pixelsPerDegree = kFlipPixelsPerDegree);
+  HdrFlip(HdrFlip&&) noexcept;
+  HdrFlip& operator=(HdrFlip&&) noexcept;
+  ~HdrFlip();
+  Image operator()(const Image& technique) const;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
 
 /// Over the mask's pixels. Empty without any.
 FlipFigures flipFigures(const Image& flip, const Image& mask);

@@ -92,7 +92,7 @@ TEST(Flip, OfAnEdgeAgainstBlackIsByHand) {
 
 TEST(Flip, OfEqualPicturesIsZero) {
   for (const float v : ldrFlip(step(), step()).data) ASSERT_EQ(v, 0.0f);
-  for (const float v : hdrFlip(step(), step()).data) ASSERT_EQ(v, 0.0f);
+  for (const float v : HdrFlip(step())(step()).data) ASSERT_EQ(v, 0.0f);
 }
 
 TEST(Flip, IsSymmetric) {
@@ -105,7 +105,7 @@ TEST(Flip, IsBounded) {
   };
   EXPECT_TRUE(inside(ldrFlip(step(), checkers(0.5f))));
   EXPECT_TRUE(inside(ldrFlip(filled(1, 0, 0), filled(0, 1, 1))));
-  EXPECT_TRUE(inside(hdrFlip(filled(900, 0, 0), filled(0, 1, 1000))));
+  EXPECT_TRUE(inside(HdrFlip(filled(0, 1, 1000))(filled(900, 0, 0))));
 }
 
 TEST(Flip, RisesWithContrast) {
@@ -129,7 +129,7 @@ TEST(Flip, APixelThatIsNotFiniteIsOne) {
   Image broken = grey(0.5f);
   broken.at(kSize / 2, kSize / 2, 1) = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(middle(ldrFlip(broken, grey(0.5f))), 1.0);
-  EXPECT_EQ(middle(hdrFlip(broken, grey(0.5f))), 1.0);
+  EXPECT_EQ(middle(HdrFlip(grey(0.5f))(broken)), 1.0);
 }
 
 TEST(Flip, ExposuresRunFromTheBrightestToTheMedian) {
@@ -149,7 +149,7 @@ TEST(Flip, HdrSeesWhatOneExposureHides) {  // 40 and 60 are both white in a pict
     }
   }
   EXPECT_EQ(ldrFlip(bright, brighter).at(14, 14), 0.0f);
-  EXPECT_GT(hdrFlip(bright, brighter).at(14, 14), 0.05f);
+  EXPECT_GT(HdrFlip(brighter)(bright).at(14, 14), 0.05f);
 }
 
 TEST(Flip, FiguresAreOfTheMask) {
@@ -164,7 +164,7 @@ TEST(Flip, FiguresAreOfTheMask) {
 
 TEST(Flip, ShapesMustAgree) {
   EXPECT_THROW(ldrFlip(grey(0.0f), Image(kSize, kSize, 1)), Error);
-  EXPECT_THROW(hdrFlip(grey(0.0f), Image(kSize, kSize + 1, 3)), Error);
+  EXPECT_THROW(HdrFlip(Image(kSize, kSize + 1, 3))(grey(0.0f)), Error);
 }
 
 }  // namespace

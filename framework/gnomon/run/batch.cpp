@@ -197,9 +197,10 @@ BatchSummary runBatch(const std::vector<ResolvedRun>& runs, Registry& registry, 
         }
         progress(mine, total, name, nullptr);
         JobRecord record = lightRun ? lightRun->run(job.technique) : failedJob(run, light, job.technique, noReference);
-        appendLineSynced(summary.results, toJsonLine(record));
         slice.note("job", record.job);
         slice.note("status", jobStatusName(record.status));
+        const TraceSlice writing(&trace, "record");
+        appendLineSynced(summary.results, toJsonLine(record));
         if (record.time) writeFileAtomically(options.out / "timing" / (record.job + ".json"), timingPairsJson(*record.time));
         summary.records.push_back(std::move(record));
         progress(mine + 1, total, name, &summary.records.back());

@@ -69,12 +69,13 @@ struct LightRun::State : LightStage {
 
   void judge(JobRecord& record, Slot slot, const Image& visibility, const FrameReport& frame) {
     record.reference = referenceRecord;
-    record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
-    record.splits = measureSplits({visibility, reference.halves.a, reference.halves.b, classes, receivers.positions,
-                                   receivers.normals, nominal(), run.camera.position});
-    record.flip = traced("flip", [&] {
-      return flipFigures(hdrFlip(whitePicture(session, receivers, visibility), whiteReference), receivers.mask);
+    traced("error", [&] {
+      record.error = measureError(visibility, reference.halves.a, reference.halves.b, classes);
+      record.splits = measureSplits({visibility, reference.halves.a, reference.halves.b, classes, receivers.positions,
+                                     receivers.normals, nominal(), run.camera.position});
     });
+    record.flip =
+        traced("flip", [&] { return flipFigures((*flip)(whitePicture(session, receivers, visibility)), receivers.mask); });
     JobWork work = traced("work", [&] { return measureWork(*this, slot, frame.technique.counters); });
     record.work = std::move(work.counters);
     if (record.reason.empty()) record.reason = work.uncounted;

@@ -54,7 +54,7 @@ LightStage::LightStage(const ResolvedRun& r, std::size_t l, Registry& g, LightRu
   classes = classesOf(session, receivers, reference.halves);
   Image mean = reference.halves.a;
   for (std::size_t i = 0; i < mean.data.size(); ++i) mean.data[i] = 0.5f * (mean.data[i] + reference.halves.b.data[i]);
-  whiteReference = whitePicture(session, receivers, mean);
+  flip.emplace(whitePicture(session, receivers, mean));
 }
 
 void LightStage::renderReferences() {

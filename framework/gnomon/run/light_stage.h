@@ -1,8 +1,10 @@
 // What the jobs of one light share: a session, a reference, what pixels are judged by. Internal to run/.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "gnomon/measure/flip.h"
 #include "gnomon/run/light_run.h"
 #include "gnomon/run/reference.h"
 #include "gnomon/run/shimmer.h"
@@ -21,7 +23,7 @@ struct LightStage {
   MotionReference motion;
   ReceiverImages receivers;
   Image classes;
-  Image whiteReference;  ///< whitePicture of the mean of the reference's halves
+  std::optional<HdrFlip> flip;  ///< of whitePicture, against that of the mean of the reference's halves
   MachineRecord machine;
 
   /// Renders or loads the references. Throws Error.

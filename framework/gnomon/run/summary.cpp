@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
 
 #include "gnomon/base/json.h"
 
@@ -30,27 +33,36 @@ std::string threeDigits(double value) {
   return fmt::format("{:.{}f}", value, decimals);
 }
 
-/// "taps 5, map_size 512" of the values given; defaults included, since a record holds all.
-std::string parametersOf(const JobRecord& record, const std::vector<JobRecord>& records) {
-  // Only what differs between records of the same technique tells them apart.
-  const Json mine = Json::parse(record.parametersJson, nullptr, false);
-  std::string text;
-  if (!mine.is_object()) return text;
-  for (const auto& [name, value] : mine.items()) {
-    const bool varies = std::any_of(records.begin(), records.end(), [&, &key = name, &own = value](const JobRecord& other) {
-      if (other.technique != record.technique || other.scene != record.scene) return false;
-      const Json theirs = Json::parse(other.parametersJson, nullptr, false);
-      return theirs.is_object() && theirs.contains(key) && theirs[key] != own;
-    });
-    if (varies)
+/// What differs between the records of one technique and scene: only that tells them apart.
+class Varying {
+ public:
+  explicit Varying(const std::vector<JobRecord>& records) {
+    for (const JobRecord& record : records) {
+      const Json parameters = Json::parse(record.parametersJson, nullptr, false);
+      if (!parameters.is_object()) continue;
+      for (const auto& [name, value] : parameters.items()) values_[{record.scene, record.technique, name}].insert(value.dump());
+    }
+  }
+
+  /// "taps 5, map_size 512"
+  std::string parametersOf(const JobRecord& record) const {
+    const Json parameters = Json::parse(record.parametersJson, nullptr, false);
+    std::string text;
+    if (!parameters.is_object()) return text;
+    for (const auto& [name, value] : parameters.items()) {
+      if (values_.at({record.scene, record.technique, name}).size() < 2) continue;
       text +=
           fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value.is_string() ? value.get<std::string>() : value.dump());
+    }
+    return text;
   }
-  return text;
-}
 
-std::vector<std::string> row(const JobRecord& r, const std::vector<JobRecord>& records) {
-  std::vector<std::string> cells{r.technique, parametersOf(r, records)};
+ private:
+  std::map<std::tuple<std::string, std::string, std::string>, std::set<std::string>> values_;  ///< by scene, technique, name
+};
+
+std::vector<std::string> row(const JobRecord& r, const Varying& varying) {
+  std::vector<std::string> cells{r.technique, varying.parametersOf(r)};
   if (r.status != JobStatus::ok) {
     cells.push_back(jobStatusName(r.status) + ": " + oneLine(r.reason));
     return cells;
@@ -120,6 +132,7 @@ std::string alignedTable(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string summaryTable(const std::vector<JobRecord>& records) {
+  const Varying varying(records);
   std::vector<std::pair<std::string, int>> groups;
   for (const JobRecord& r : records) {
     const std::pair<std::string, int> group{r.scene, r.light};
@@ -132,7 +145,7 @@ std::string summaryTable(const std::vector<JobRecord>& records) {
     for (const JobRecord& r : records) {
       if (r.scene != scene || r.light != light) continue;
       if (first == nullptr || (!first->time && r.time)) first = &r;
-      rows.push_back(row(r, records));
+      rows.push_back(row(r, varying));
     }
     const std::string timer = first->time && first->time->timer ? clockName(*first->time->timer) + " " : "";
     rows.insert(rows.begin(), {"technique", "parameters", "RMSE", "band RMSE", "bias", timer + "ms", "x baseline", "job"});
