@@ -17,12 +17,6 @@ namespace {
 
 constexpr int kMaxIncludeDepth = 32;
 
-std::string declaration(const Constant& constant) {
-  if (const bool* b = std::get_if<bool>(&constant.value)) return fmt::format("const bool {} = {};\n", constant.name, *b);
-  if (const int* i = std::get_if<int>(&constant.value)) return fmt::format("const int {} = {};\n", constant.name, *i);
-  return fmt::format("const float {} = {:.9e};\n", constant.name, std::get<float>(constant.value));
-}
-
 /// The name between the quotes of an #include line, empty if it has none; nullopt when the line is no such line.
 std::optional<std::string> includedName(const std::string& line) {
   const std::size_t i = line.find_first_not_of(" \t");
@@ -43,6 +37,8 @@ class DefenceSwitch {
 
   /// The line with `(true)` or `(false)` for each GNOMON_DEFENCE(name) outside comments, whose names it adds to `met`.
   std::string decided(const std::string& line, const std::string& where, std::set<std::string>& met) {
+    const bool isPlain = line.find("GNOMON_DEFENCE") == std::string::npos && line.find("/*") == std::string::npos;
+    if (isPlain && !inComment_) return line;
     std::string result;
     for (std::size_t i = 0; i < line.size();) {
       if (inComment_) {
@@ -188,6 +184,12 @@ void countReads(std::vector<ExpandedShader>& shaders, const std::vector<ShaderSt
 }
 
 }  // namespace
+
+std::string declaration(const Constant& constant) {
+  if (const bool* b = std::get_if<bool>(&constant.value)) return fmt::format("const bool {} = {};\n", constant.name, *b);
+  if (const int* i = std::get_if<int>(&constant.value)) return fmt::format("const int {} = {};\n", constant.name, *i);
+  return fmt::format("const float {} = {:.9e};\n", constant.name, std::get<float>(constant.value));
+}
 
 ExpandedShader expandShader(const ShaderSources& sources, const std::string& file, const std::vector<Constant>& constants) {
   Expander expander(sources);

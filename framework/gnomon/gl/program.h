@@ -31,6 +31,9 @@ struct ShaderSources {
   std::optional<ReadCounting> readCounting = {};            ///< programs count the texels that they read
 };
 
+/// "const TYPE NAME = VALUE;" and a line break.
+std::string declaration(const Constant& constant);
+
 struct ShaderStage {
   GLenum type;       ///< GL_VERTEX_SHADER, ...
   std::string file;  ///< looked up in the directories

@@ -22,15 +22,14 @@ bool mentions(const std::string& text, const std::string& word) {
   return false;
 }
 
-std::string expandAll(const ShaderSources& sources, const std::vector<ShaderStage>& stages,
-                      const std::vector<Constant>& constants) {
+std::string expandAll(const ShaderSources& sources, const std::vector<ShaderStage>& stages) {
   std::string all;
   if (const auto& counting = sources.readCounting) {
     const glm::ivec2 pixels = counting->pixels.value_or(glm::ivec2(0));
     all += fmt::format("// counts reads, of {} x {} pixels, depth {}\n", pixels.x, pixels.y, counting->writesDepth);
   }
   for (const ShaderStage& stage : stages) {
-    const ExpandedShader shader = expandShader(sources, stage.file, constants);
+    const ExpandedShader shader = expandShader(sources, stage.file, {});
     if (sources.defencesMet) sources.defencesMet->insert(shader.defences.begin(), shader.defences.end());
     // The numbers of #line stand for files: programs of other files have other
     // errors, and so another text.
@@ -100,12 +99,15 @@ void bindBlocks(Program& program) {
 
 std::shared_ptr<const Program> ProgramCache::get(const ShaderSources& sources, const std::vector<ShaderStage>& stages,
                                                  const std::vector<Constant>& constants, const std::string& label) {
-  const std::string bare = expandAll(sources, stages, {});
+  std::string text = expandAll(sources, stages);
   std::vector<Constant> used;
+  std::string declarations;
   for (const Constant& constant : constants) {
-    if (mentions(bare, constant.name)) used.push_back(constant);
+    if (!mentions(text, constant.name)) continue;
+    used.push_back(constant);
+    declarations += declaration(constant);
   }
-  std::string text = used.empty() ? bare : expandAll(sources, stages, used);
+  text = declarations + text;
   if (const auto known = find(text)) {
     keep(known);
     return known;

@@ -19,7 +19,7 @@ struct Program {
     GLuint at = 0;     ///< texture unit, image unit or binding
   };
   ProgramObject object;
-  std::string text;             ///< of all stages, as compiled
+  std::string text;             ///< declarations of its constants, then all stages
   std::vector<Point> samplers;  ///< and plain uniforms, which nothing can give:
                                 ///< their users refuse them
   std::vector<Point> images;

@@ -13,9 +13,6 @@
 namespace gnomon {
 namespace {
 
-constexpr int kBandFlag = 4;
-constexpr int kTerminatorFlag = 8;
-
 void requireShape(const Image& image, const Image& mask, int channels, const char* name) {
   if (image.width != mask.width || image.height != mask.height || image.channels != channels) {
     throw Error(fmt::format("classes: {} is {}x{} with {} channels, must be {}x{} with {}", name, image.width, image.height,
@@ -51,15 +48,6 @@ bool onOneSurface(glm::dvec3 p1, glm::dvec3 n1, glm::dvec3 p2, glm::dvec3 n2) {
   const glm::dvec3 step = p2 - p1;
   const double gap = 0.5 * (std::abs(glm::dot(n1, step)) + std::abs(glm::dot(n2, step)));
   return gap <= (sineOfHalf + kSameSurfaceSlack) * glm::length(step);
-}
-
-ClassCode ClassCode::decode(float code) {
-  const int bits = static_cast<int>(code);
-  return {static_cast<PixelClass>(bits & 3), (bits & kBandFlag) != 0, (bits & kTerminatorFlag) != 0};
-}
-
-float ClassCode::encode() const {
-  return static_cast<float>(static_cast<int>(pixelClass) + (band ? kBandFlag : 0) + (terminator ? kTerminatorFlag : 0));
 }
 
 Image classifyPixels(const ClassInputs& inputs) {

@@ -17,9 +17,18 @@ struct ClassCode {
   bool band = false;        ///< penumbra, or within kBandPixels of a lit/umbra change on one surface
   bool terminator = false;  ///< N.L < kTerminatorCosine
 
-  static ClassCode decode(float code);
-  float encode() const;
+  static ClassCode decode(float code) {
+    const int bits = static_cast<int>(code);
+    return {static_cast<PixelClass>(bits & 3), (bits & kBandFlag) != 0, (bits & kTerminatorFlag) != 0};
+  }
+  float encode() const {
+    return static_cast<float>(static_cast<int>(pixelClass) + (band ? kBandFlag : 0) + (terminator ? kTerminatorFlag : 0));
+  }
   bool operator==(const ClassCode&) const = default;
+
+ private:
+  static constexpr int kBandFlag = 4;
+  static constexpr int kTerminatorFlag = 8;
 };
 
 /// Chebyshev distance in pixels up to which a pixel belongs to a lit/umbra change.

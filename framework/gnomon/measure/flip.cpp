@@ -43,12 +43,16 @@ glm::dvec3 rgbOf(const glm::dvec3& yxz) {
   return kRgb * (glm::dvec3(y + yxz.y / 500.0, y, y - yxz.z / 200.0) * kWhite);
 }
 
+/// CIE 1976, of a share of white.
+double lightnessCurve(double t) {
+  constexpr double delta = 6.0 / 29.0;
+  return t > delta * delta * delta ? std::cbrt(t) : t / (3.0 * delta * delta) + 4.0 / 29.0;
+}
+
 /// L*a*b*, its chroma less the darker the colour is (Hunt's effect, eq. 4).
 glm::dvec3 huntLab(const glm::dvec3& rgb) {
   const glm::dvec3 n = kXyz * rgb / kWhite;
-  constexpr double delta = 6.0 / 29.0;
-  glm::dvec3 f;
-  for (int i = 0; i < 3; ++i) f[i] = n[i] > delta * delta * delta ? std::cbrt(n[i]) : n[i] / (3.0 * delta * delta) + 4.0 / 29.0;
+  const glm::dvec3 f(lightnessCurve(n.x), lightnessCurve(n.y), lightnessCurve(n.z));
   const double lightness = 116.0 * f.y - 16.0;
   return {lightness, 0.01 * lightness * 500.0 * (f.x - f.y), 0.01 * lightness * 200.0 * (f.y - f.z)};
 }
@@ -156,7 +160,6 @@ Plane seen(const Plane& plane, Size size, std::span<const Sensitivity> gaussians
 }
 
 constexpr double kFeatureDegrees = 0.082;  // width of a line that the eye sees best: w
-constexpr double kFeatureExponent = 0.5;   // q_f
 
 /// Strength of edges and points in a picture's luminance, each a length per pixel (section 3.2).
 struct Features {
@@ -214,14 +217,18 @@ Seen look(const Image& image, double pixelsPerDegree) {
     luminance[i] = static_cast<float>((yxz.x + 16.0) / 116.0);
   }
   const Plane y = seen(channels[0], size, {&kLuminance, 1}, pixelsPerDegree);
-  const bool isColoured = !isGrey(channels[1]) || !isGrey(channels[2]);  // what our pictures are not
-  const Plane x = isColoured ? seen(channels[1], size, {&kRedGreen, 1}, pixelsPerDegree) : channels[1];
-  const Plane z = isColoured ? seen(channels[2], size, kBlueYellow, pixelsPerDegree) : channels[2];
   Seen result{std::vector<glm::vec3>(size.pixels()), featuresOf(luminance, size, pixelsPerDegree)};
+  if (isGrey(channels[1]) && isGrey(channels[2])) {  // as all pictures of visibility are: a third of the work
+    for (std::size_t i = 0; i < size.pixels(); ++i)
+      result.lab[i].x = static_cast<float>(116.0 * lightnessCurve(std::clamp((y[i] + 16.0) / 116.0, 0.0, 1.0)) - 16.0);
+  } else {
+    const Plane x = seen(channels[1], size, {&kRedGreen, 1}, pixelsPerDegree);
+    const Plane z = seen(channels[2], size, kBlueYellow, pixelsPerDegree);
+    for (std::size_t i = 0; i < size.pixels(); ++i) result.lab[i] = huntLab(glm::clamp(rgbOf({y[i], x[i], z[i]}), 0.0, 1.0));
+  }
   for (std::size_t i = 0; i < size.pixels(); ++i) {
-    const bool isFinite = std::isfinite(image.data[3 * i] + image.data[3 * i + 1] + image.data[3 * i + 2]);
-    result.lab[i] = isFinite ? huntLab(glm::clamp(rgbOf({y[i], x[i], z[i]}), 0.0, 1.0))
-                             : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+    if (!std::isfinite(image.data[3 * i] + image.data[3 * i + 1] + image.data[3 * i + 2]))
+      result.lab[i] = glm::vec3(std::numeric_limits<float>::quiet_NaN());
   }
   return result;
 }
@@ -233,7 +240,7 @@ Image compared(const Seen& a, const Seen& b, Size size) {
     const double point = std::abs(a.features.points[i] - b.features.points[i]);
     if (a.lab[i] == b.lab[i] && edge == 0.0 && point == 0.0) continue;  // most pixels
     const double colour = redistributed(hyab(a.lab[i], b.lab[i]));
-    const double feature = std::min(1.0, std::pow(std::max(edge, point) / std::numbers::sqrt2, kFeatureExponent));
+    const double feature = std::min(1.0, std::sqrt(std::max(edge, point) / std::numbers::sqrt2));  // q_f = 0.5
     flip.data[i] = std::isnan(colour) ? 1.0f : static_cast<float>(std::pow(colour, 1.0 - feature));
   }
   return flip;
@@ -265,8 +272,9 @@ double shownAtBreak() {
 
 Image exposed(const Image& image, double stops) {
   Image result = image;
+  const double factor = std::exp2(stops);
   for (float& value : result.data) {
-    if (std::isfinite(value)) value = static_cast<float>(toneMapped(std::max(0.0, std::exp2(stops) * value)));
+    if (std::isfinite(value)) value = static_cast<float>(toneMapped(std::max(0.0, factor * value)));
   }
   return result;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/mat4x4.hpp>
@@ -76,7 +75,8 @@ class View {
     return across * (glm::length(inputs_.light.target - inputs_.light.position) / -glm::dot(from, axes_.z));
   }
 
-  void eachPixel(const std::function<void(glm::ivec2)>& visit) const {
+  template <class Visit>
+  void eachPixel(const Visit& visit) const {
     for (int y = 0; y < height(); ++y) {
       for (int x = 0; x < width(); ++x) visit({x, y});
     }
